@@ -1,0 +1,59 @@
+// Rigid transformations. Conventions of the whole project: `a_T_b` takes coordinates in b to coordinates in a; a small
+// update (6) is [translation; rotation vector [rad]] and is applied on the right:
+//   retract(a_T_b, d).translation = a_T_b.translation + a_T_b.rotation * d.head<3>()
+//   retract(a_T_b, d).rotation    = a_T_b.rotation * exp(d.tail<3>())
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace edgeslam {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+struct Pose {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // unit
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Pose inverse() const {
+    const Eigen::Quaterniond inverse_rotation = rotation.conjugate();
+    return {inverse_rotation, -(inverse_rotation * translation)};
+  }
+  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rotation * point + translation; }
+  Pose operator*(const Pose& other) const {
+    return {(rotation * other.rotation).normalized(), rotation * other.translation + translation};
+  }
+};
+
+inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+// Unit quaternion of a rotation vector [rad].
+inline Eigen::Quaterniond rotationExp(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  if (angle < 1e-8) {
+    return Eigen::Quaterniond(1.0, 0.5 * rotation_vector.x(), 0.5 * rotation_vector.y(), 0.5 * rotation_vector.z())
+        .normalized();
+  }
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, rotation_vector / angle));
+}
+
+// Rotation vector [rad], of length at most pi, of a unit quaternion.
+inline Eigen::Vector3d rotationLog(const Eigen::Quaterniond& rotation) {
+  const Eigen::AngleAxisd angle_axis(rotation.w() < 0 ? Eigen::Quaterniond(-rotation.coeffs()) : rotation);
+  return angle_axis.angle() * angle_axis.axis();
+}
+
+inline Pose retract(const Pose& pose, const Vector6d& update) {
+  return {(pose.rotation * rotationExp(update.tail<3>())).normalized(),
+          pose.translation + pose.rotation * update.head<3>()};
+}
+
+// Angle [rad] between two orientations.
+inline double rotationAngle(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) { return a.angularDistance(b); }
+
+}  // namespace edgeslam

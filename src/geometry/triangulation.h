@@ -1,0 +1,32 @@
+// P17: depth of a point from two or more views, only where the epipolar line crosses the edge at an angle. The point is
+// host bearing f (unit) and inverse distance rho: X_host = f / rho; in another camera, up to scale,
+// X = R f + rho t with other_T_host = (R, t).
+#pragma once
+
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/measurement.h"
+#include "geometry/pose.h"
+
+namespace edgeslam {
+
+struct TriangulationView {
+  Pose view_T_host;
+  Measurement measurement;
+};
+
+struct TriangulationResult {
+  bool converged = false;     // a minimum in front of all cameras was found
+  double inverse_depth = 0;   // [1 / map unit], along the unit bearing
+  double sigma = 0;           // its standard deviation, from the measurements' information projected on the epipolar direction
+  double parallax = 0;        // largest angle [rad] between the rays of the host and of a view
+  double largest_error = 0;   // largest whitened reprojection error over the views (norm of 2)
+};
+
+// Gauss-Newton on the inverse depth over all views, started from the best of a few depths sampled evenly in inverse
+// depth when `initial_inverse_depth` <= 0, else from it.
+TriangulationResult triangulate(const Camera& camera, const Eigen::Vector3d& host_bearing,
+                                const std::vector<TriangulationView>& views, double initial_inverse_depth = 0);
+
+}  // namespace edgeslam
