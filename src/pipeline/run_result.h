@@ -1,0 +1,83 @@
+// What a run leaves: a record a frame, the keyframes, the map, and what is needed to explain them in files and in the report.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/pose.h"
+
+namespace edgeslam {
+
+enum class TrackingState {
+  initialising,  // no map yet; the reason says what is waited for
+  tracking,      // a measured pose
+  predicted,     // a pose from motion alone (blurred or unreadable frame): not good, not in trajectory.txt
+  recovered,     // a measured pose again after a track loss
+  relocalised,   // likewise, found again against the whole map
+  lost           // no pose
+};
+
+// "initialising", "tracking", ...
+const char* stateName(TrackingState state);
+
+// True where the pose was measured, not guessed.
+inline bool isGoodPose(TrackingState state) {
+  return state == TrackingState::tracking || state == TrackingState::recovered || state == TrackingState::relocalised;
+}
+
+struct FrameRecord {
+  std::int64_t index = 0;    // in the source
+  std::int64_t time_ns = 0;
+  TrackingState state = TrackingState::initialising;  // as given out at the time
+  std::string reason;        // why it is not `tracking`, or empty
+  bool has_live_pose = false;
+  Pose live_world_T_camera;  // as given out at the time
+  Matrix6d covariance = Matrix6d::Zero();  // of the live pose: right-hand update [translation; rotation]
+  bool has_final_pose = false;             // good, and carried by its keyframe's final pose
+  Pose final_world_T_camera;
+  int tracked_points = 0;    // points followed in the image
+  int mapped_points = 0;     // of these with depth and used for the pose
+  bool is_keyframe = false;
+  std::map<std::string, double> stage_ms;  // time of each stage in this frame [ms]: "pyramid", "edges", "flow", "pose", ...
+};
+
+struct KeyframeRecord {
+  int id = 0;
+  std::int64_t frame_index = 0;
+  std::int64_t time_ns = 0;
+  Pose world_T_camera;  // final
+  std::string reason;   // which criterion chose it (P8 to P12)
+  int shared_points = 0;
+};
+
+struct MapPointRecord {
+  Eigen::Vector3d position;        // world, map units
+  Eigen::Vector3d edge_direction;  // world, unit; zero for a corner-like point
+  int chain = -1;                  // points of one image edge share a number; unique over the map
+  int order = 0;                   // place along the chain
+  float depth_sigma_ratio = 0;     // standard deviation of the depth over the depth
+  unsigned char grey = 0;          // of the image there
+};
+
+// A frame with its edges and tracks, for the report.
+struct DrawnFrame {
+  std::int64_t index = 0;
+  cv::Mat image;  // CV_8UC3 (BGR)
+};
+
+struct RunResult {
+  Camera camera;
+  std::vector<FrameRecord> frames;
+  std::vector<KeyframeRecord> keyframes;
+  std::vector<MapPointRecord> map_points;
+  std::vector<DrawnFrame> drawings;
+  std::string initialisation;    // how the map was started: method, pair, quality factor
+  std::int64_t unreadable_frames = 0;
+  double wall_s = 0;             // of the whole run
+};
+
+}  // namespace edgeslam
