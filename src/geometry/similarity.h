@@ -23,9 +23,10 @@ struct Similarity {
   }
 };
 
-// Least-squares similarity with to ~ scale * R * from + t. `with_scale` false keeps the scale at 1. Needs at least 3 points
-// that do not lie on one line for a unique rotation; otherwise one of the best is returned. Throws std::invalid_argument
-// where sizes differ or are 0.
+// Least-squares similarity with to ~ scale * R * from + t. `with_scale` false keeps the scale at 1. Needs at least 3
+// points that do not lie on one line for a unique rotation; otherwise one of the best is returned, and a mere
+// translation where all points of a set coincide. Throws std::invalid_argument where sizes differ or are 0 or a point
+// is not finite.
 Similarity alignHorn(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to,
                      bool with_scale = true);
 
