@@ -17,15 +17,17 @@ struct TriangulationView {
 };
 
 struct TriangulationResult {
-  bool converged = false;     // a minimum in front of all cameras was found
-  double inverse_depth = 0;   // [1 / map unit], along the unit bearing
-  double sigma = 0;           // its standard deviation, from the measurements' information projected on the epipolar direction
-  double parallax = 0;        // largest angle [rad] between the rays of the host and of a view
-  double largest_error = 0;   // largest whitened reprojection error over the views (norm of 2)
+  bool converged = false;    // a minimum in front of the host and of all other cameras, not at infinity, was found
+  double inverse_depth = 0;  // [1 / map unit], along the unit bearing
+  // Standard deviation of the inverse depth, from the measurements' information projected on the epipolar direction:
+  // large where the epipolar line runs along the edge, infinite without a baseline. The host bearing is taken as exact.
+  double sigma = 0;
+  double parallax = 0;       // largest angle [rad] between the rays of the host and of a view
+  double largest_error = 0;  // largest whitened reprojection error over the views (norm of 2)
 };
 
-// Gauss-Newton on the inverse depth over all views, started from the best of a few depths sampled evenly in inverse
-// depth when `initial_inverse_depth` <= 0, else from it.
+// Gauss-Newton on the inverse depth over all views, without allocation. Starts from `initial_inverse_depth` where that
+// is positive, else from the best of a few depths that spread the parallax from 0 to 60 degrees.
 TriangulationResult triangulate(const Camera& camera, const Eigen::Vector3d& host_bearing,
                                 const std::vector<TriangulationView>& views, double initial_inverse_depth = 0);
 
