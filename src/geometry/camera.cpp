@@ -8,7 +8,8 @@ namespace edgeslam {
 namespace {
 
 // Distorted normalized coordinates of undistorted ones, and their 2x2 derivative.
-Eigen::Vector2d distortRadialTangential(const std::array<double, 5>& k, const Eigen::Vector2d& u, Eigen::Matrix2d* derivative) {
+Eigen::Vector2d distortRadialTangential(const std::array<double, 5>& k, const Eigen::Vector2d& u,
+                                        Eigen::Matrix2d* derivative) {
   const double x = u.x(), y = u.y(), r2 = x * x + y * y;
   const double k1 = k[0], k2 = k[1], p1 = k[2], p2 = k[3], k3 = k[4];
   const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
@@ -28,7 +29,8 @@ double distortAngle(const std::array<double, 5>& k, double theta, double* deriva
   return theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
 }
 
-Eigen::Vector2d projectKannalaBrandt(const Camera& camera, const Eigen::Vector3d& p, Eigen::Matrix<double, 2, 3>* jacobian) {
+Eigen::Vector2d projectKannalaBrandt(const Camera& camera, const Eigen::Vector3d& p,
+                                     Eigen::Matrix<double, 2, 3>* jacobian) {
   const double radius = std::hypot(p.x(), p.y());
   const double squared = radius * radius + p.z() * p.z();
   double angle_derivative = 1;

@@ -12,18 +12,19 @@ enum class CameraModel { pinhole_radial_tangential, kannala_brandt };
 
 struct Camera {
   CameraModel model = CameraModel::pinhole_radial_tangential;
-  int width = 0;   // [px]
-  int height = 0;  // [px]
+  int width = 0;                                    // [px]
+  int height = 0;                                   // [px]
   double fx = 0, fy = 0, cx = 0, cy = 0;            // [px]
   std::array<double, 5> distortion{0, 0, 0, 0, 0};  // radial-tangential: k1 k2 p1 p2 k3; Kannala-Brandt: k1 k2 k3 k4 0
 };
 
-// Pixel of a point in the camera frame. The 2x3 derivative d pixel / d point is written where `jacobian` is given. Valid
-// for points in front of the camera (z > 0 for the pinhole model); the caller checks that.
+// Pixel of a point in the camera frame. The 2x3 derivative d pixel / d point is written where `jacobian` is given.
+// Valid for points in front of the camera (z > 0 for the pinhole model); the caller checks that.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point,
                         Eigen::Matrix<double, 2, 3>* jacobian = nullptr);
 
-// Bearing (unit vector, camera frame) of a pixel. Inverts the distortion iteratively (Newton), to 1e-10 in normalized units.
+// Bearing (unit vector, camera frame) of a pixel. Inverts the distortion iteratively (Newton), to 1e-10 in normalized
+// units.
 Eigen::Vector3d bearing(const Camera& camera, const Eigen::Vector2d& pixel);
 
 // True where a pixel lies inside the image by at least `border` [px].

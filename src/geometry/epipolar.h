@@ -12,31 +12,33 @@ namespace edgeslam {
 
 struct RelativePose {
   bool found = false;
-  Pose second_T_first;         // translation of unit length
-  std::vector<char> inliers;   // one a correspondence
+  Pose second_T_first;        // translation of unit length
+  std::vector<char> inliers;  // one a correspondence
   int inlier_count = 0;
-  // Median over the inliers of the angle [rad] between the rays that remains after the rotation is taken away: near zero
-  // for a rotation alone or too little parallax.
+  // Median over the inliers of the angle [rad] between the rays that remains after the rotation is taken away: near
+  // zero for a rotation alone or too little parallax.
   double parallax = 0;
   // Share of the correspondences that a rotation alone explains within the threshold (1: rotation only).
   double rotation_only_share = 0;
 };
 
-// Relative pose from matching unit bearings. `threshold` is the epipolar error [rad] for an inlier. Same seed, same result.
+// Relative pose from matching unit bearings. `threshold` is the epipolar error [rad] for an inlier. Same seed, same
+// result.
 RelativePose relativePose(const std::vector<Eigen::Vector3d>& first, const std::vector<Eigen::Vector3d>& second,
                           double threshold, std::uint64_t seed);
 
-// Rotation second_R_first that best aligns matching unit bearings (Horn/Kabsch, robustified by trimming), and its median
-// remaining angle [rad].
+// Rotation second_R_first that best aligns matching unit bearings (Horn/Kabsch, robustified by trimming), and its
+// median remaining angle [rad].
 struct RelativeRotation {
   Eigen::Quaterniond rotation;
   double median_error = 0;
 };
-RelativeRotation relativeRotation(const std::vector<Eigen::Vector3d>& first, const std::vector<Eigen::Vector3d>& second);
+RelativeRotation relativeRotation(const std::vector<Eigen::Vector3d>& first,
+                                  const std::vector<Eigen::Vector3d>& second);
 
 // P7: largest deviation, whitened by the middle measurement, of the middle view's pixel from where the other two views'
-// epipolar lines cross in it. Where the two lines are nearly parallel, the distance to each line is used instead. Poses are
-// camera to world. `middle` is the measurement in the middle view.
+// epipolar lines cross in it. Where the two lines are nearly parallel, the distance to each line is used instead. Poses
+// are camera to world. `middle` is the measurement in the middle view.
 double threeViewError(const Camera& camera, const Pose& world_T_first, const Pose& world_T_middle,
                       const Pose& world_T_last, const Eigen::Vector2d& first_pixel, const Measurement& middle,
                       const Eigen::Vector2d& last_pixel);

@@ -13,7 +13,8 @@ struct Measurement {
   double sigma_tangent = 1000.0;                      // and along it [px]
 };
 
-// W (2x2) with W^T W = information matrix: a pixel error e becomes W e, whose two entries (across, along) have variance 1.
+// W (2x2) with W^T W = information matrix: a pixel error e becomes W e, whose two entries (across, along) have
+// variance 1.
 inline Eigen::Matrix2d whitening(const Measurement& m) {
   Eigen::Matrix2d w;
   w << m.normal.x() / m.sigma_normal, m.normal.y() / m.sigma_normal, -m.normal.y() / m.sigma_tangent,

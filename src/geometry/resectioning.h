@@ -16,7 +16,8 @@ struct ResectioningResult {
   int inlier_count = 0;
 };
 
-// `points` in the world frame, `bearings` unit in the camera frame; `threshold` [rad] for an inlier. Same seed, same result.
+// `points` in the world frame, `bearings` unit in the camera frame; `threshold` [rad] for an inlier. Same seed, same
+// result.
 ResectioningResult resection(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector3d>& bearings,
                              double threshold, std::uint64_t seed, int iterations = 200);
 
