@@ -1,0 +1,188 @@
+#include "adjustment/pose_adjustment.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "adjustment/reprojection.h"
+
+namespace edgeslam {
+namespace {
+
+struct PreparedObservation {
+  Eigen::Vector3d point;  // world frame
+  WhitenedPixel measured;
+};
+
+// Whitening of a measurement whose point's depth is uncertain too: Cholesky of diag(sigma_normal^2, sigma_tangent^2)
+// plus the depth's share, in the edge's own axes (across, along), so that the first entry stays the one across the
+// edge.
+Eigen::Matrix2d whiteningWithDepth(const PoseObservation& observation) {
+  const Measurement& m = observation.measurement;
+  if (!(observation.depth_sigma_px > 0)) return whitening(m);
+  Eigen::Matrix2d edge_axes;
+  edge_axes << m.normal.x(), m.normal.y(), -m.normal.y(), m.normal.x();
+  const Eigen::Vector2d shift = observation.depth_sigma_px * (edge_axes * observation.depth_direction);
+  const double across = std::sqrt(m.sigma_normal * m.sigma_normal + shift.x() * shift.x());
+  const double mixed = shift.x() * shift.y() / across;
+  const double along = std::sqrt(m.sigma_tangent * m.sigma_tangent + shift.y() * shift.y() - mixed * mixed);
+  Eigen::Matrix2d inverse_root;
+  inverse_root << 1 / across, 0, -mixed / (across * along), 1 / along;
+  return inverse_root * edge_axes;
+}
+
+std::vector<PreparedObservation> prepare(const std::vector<PoseObservation>& observations) {
+  std::vector<PreparedObservation> prepared;
+  prepared.reserve(observations.size());
+  for (const PoseObservation& o : observations) {
+    prepared.push_back({o.point, {o.measurement.pixel, whiteningWithDepth(o)}});
+  }
+  return prepared;
+}
+
+// The robust cost at a pose and its normal equations, weights frozen at that pose.
+struct NormalEquations {
+  double cost = 0;
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+};
+
+NormalEquations linearize(const Camera& camera, const Pose& world_T_camera,
+                          const std::vector<PreparedObservation>& observations, double huber, double behind_norm) {
+  const CameraFrame frame = cameraFrame(world_T_camera);
+  const double behind_cost = huberLoss(behind_norm * behind_norm, huber);
+  NormalEquations equations;
+  for (const PreparedObservation& o : observations) {
+    Eigen::Vector2d residual;
+    Matrix26d jacobian;
+    if (!poseResidual(camera, o.measured, frame, o.point, residual, &jacobian)) {
+      equations.cost += behind_cost;
+      continue;
+    }
+    const double squared_norm = residual.squaredNorm();
+    if (!(squared_norm < behind_norm * behind_norm)) {
+      equations.cost += behind_cost;
+      continue;
+    }
+    equations.cost += huberLoss(squared_norm, huber);
+    const double weight = huberWeight(std::sqrt(squared_norm), huber);
+    const Matrix26d weighted = weight * jacobian;
+    equations.information.noalias() += weighted.transpose() * jacobian;
+    equations.gradient.noalias() += weighted.transpose() * residual;
+  }
+  return equations;
+}
+
+// Solves (information + damping * diagonal) x = -gradient in units where the diagonal is 1. False: singular to working
+// precision.
+bool solveDamped(const NormalEquations& equations, double damping, Vector6d& step) {
+  const Vector6d scale = equations.information.diagonal().cwiseSqrt();
+  if (!(scale.minCoeff() > 0) || !scale.allFinite()) return false;
+  Matrix6d scaled = scale.cwiseInverse().asDiagonal() * equations.information * scale.cwiseInverse().asDiagonal();
+  scaled.diagonal().array() += damping;
+  const Eigen::LDLT<Matrix6d> factor(scaled);
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13)) return false;
+  step = -factor.solve(equations.gradient.cwiseQuotient(scale)).cwiseQuotient(scale);
+  return step.allFinite();
+}
+
+// Levenberg's minimisation with the weights renewed at every step. While far from the solution Huber's threshold is
+// wide, so that a prediction several pixels off does not make every observation an outlier.
+bool minimize(const Camera& camera, const std::vector<PreparedObservation>& observations, const PoseOptions& options,
+              Pose& pose) {
+  constexpr int kWideIterations = 3;
+  constexpr double kWideFactor = 5;
+  constexpr double kLeastDamping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
+  constexpr double kMostDamping = 1e2;
+  // A point behind the camera costs what an error of this whitened norm does; so does anything worse, without pulling.
+  constexpr double kBehindNorm = 1e4;
+
+  double huber = options.huber * kWideFactor;
+  double damping = kLeastDamping;
+  NormalEquations equations = linearize(camera, pose, observations, huber, kBehindNorm);
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    if (iteration == kWideIterations) {
+      huber = options.huber;
+      equations = linearize(camera, pose, observations, huber, kBehindNorm);
+    }
+    bool accepted = false, small = false;
+    while (!accepted && damping <= kMostDamping) {
+      Vector6d step;
+      if (!solveDamped(equations, damping, step)) return false;
+      // In units of the pose's own standard deviation, so free of scale.
+      small = step.dot(equations.information * step) < 1e-8;
+      const Pose candidate = retract(pose, step);
+      const NormalEquations at_candidate = linearize(camera, candidate, observations, huber, kBehindNorm);
+      accepted = at_candidate.cost <= equations.cost;
+      if (accepted) {
+        pose = candidate;
+        equations = at_candidate;
+        damping = std::max(kLeastDamping, 0.1 * damping);
+      } else {
+        if (small) break;
+        damping = damping * 30;
+      }
+    }
+    if (small || !accepted) {
+      if (iteration >= kWideIterations) break;
+      iteration = kWideIterations - 1;  // done with the wide threshold: on to the narrow one
+      damping = kLeastDamping;
+    }
+  }
+  return pose.rotation.coeffs().allFinite() && pose.translation.allFinite();
+}
+
+// Inliers, rms and covariance at the final pose.
+bool judge(const Camera& camera, const std::vector<PreparedObservation>& observations, const PoseOptions& options,
+           const Pose& pose, PoseResult& result) {
+  const CameraFrame frame = cameraFrame(pose);
+  Matrix6d information = Matrix6d::Zero();
+  Eigen::Array2d weighted_squares = Eigen::Array2d::Zero();  // across the edge, along it
+  double squares = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    Eigen::Vector2d residual;
+    Matrix26d jacobian;
+    if (!poseResidual(camera, observations[i].measured, frame, observations[i].point, residual, &jacobian)) continue;
+    const double norm = residual.norm();
+    if (!(norm <= options.outlier)) continue;
+    result.inliers[i] = 1;
+    ++result.inlier_count;
+    squares += norm * norm;
+    const double weight = huberWeight(norm, options.huber);
+    information.noalias() += (weight * jacobian.transpose()) * jacobian;
+    weighted_squares += weight * residual.array().square();
+  }
+  if (result.inlier_count < std::max(options.fewest, 4)) return false;
+  result.rms = std::sqrt(squares / result.inlier_count);
+  const Vector6d scale = information.diagonal().cwiseSqrt();
+  if (!(scale.minCoeff() > 0) || !scale.allFinite()) return false;
+  const Vector6d unscale = scale.cwiseInverse();
+  const Eigen::LDLT<Matrix6d> factor(Matrix6d(unscale.asDiagonal() * information * unscale.asDiagonal()));
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13)) return false;
+  const Matrix6d inverse = factor.solve(Matrix6d::Identity());
+  // The two whitened entries are judged apart, since that along an edge is near 0 whatever the noise. Each bears half
+  // of the pose's six unknowns.
+  const double variance_factor = (weighted_squares / (result.inlier_count - 3)).maxCoeff();
+  result.covariance = std::max(1.0, variance_factor) *
+                      Matrix6d(unscale.asDiagonal() * (0.5 * (inverse + inverse.transpose())) * unscale.asDiagonal());
+  return result.covariance.allFinite();
+}
+
+}  // namespace
+
+PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera,
+                      const std::vector<PoseObservation>& observations, const PoseOptions& options) {
+  PoseResult result;
+  result.world_T_camera = initial_world_T_camera;
+  result.inliers.assign(observations.size(), 0);
+  if (observations.empty() || static_cast<int>(observations.size()) < options.fewest) return result;
+  const std::vector<PreparedObservation> prepared = prepare(observations);
+  Pose pose = initial_world_T_camera;
+  if (!minimize(camera, prepared, options, pose)) return result;
+  if (!judge(camera, prepared, options, pose, result)) return result;
+  result.world_T_camera = pose;
+  result.converged = true;
+  return result;
+}
+
+}  // namespace edgeslam

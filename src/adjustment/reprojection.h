@@ -1,0 +1,102 @@
+// The residual that every adjustment minimises, and its derivatives: whitening * (project(point) - pixel), with the
+// point in the camera frame (design, section 5: what a measurement is). Derivatives by poses are by right-hand updates
+// [translation; rotation vector] as in geometry/pose.h. Inline: these run for every point of every frame.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "geometry/camera.h"
+#include "geometry/pose.h"
+
+namespace edgeslam {
+
+using Matrix23d = Eigen::Matrix<double, 2, 3>;
+using Matrix26d = Eigen::Matrix<double, 2, 6>;
+
+// A camera's pose as rotation matrix and centre, which is what residuals use many times over.
+struct CameraFrame {
+  Eigen::Matrix3d world_R_camera = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // world frame
+};
+
+inline CameraFrame cameraFrame(const Pose& world_T_camera) {
+  return {world_T_camera.rotation.toRotationMatrix(), world_T_camera.translation};
+}
+
+// True where a point (camera frame, any scale) can be seen: within 88.9 degrees of the optical axis for the pinhole
+// model, within 120 degrees for the fisheye. False for points at the centre and for NaN.
+inline bool inFront(const Camera& camera, const Eigen::Vector3d& point) {
+  const double least_cosine = camera.model == CameraModel::kannala_brandt ? -0.5 : 0.02;
+  return point.z() > least_cosine * point.norm();
+}
+
+// A pixel and what whitens errors of it.
+struct WhitenedPixel {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d whitening = Eigen::Matrix2d::Identity();
+};
+
+// Residual (2, whitened) of a point in the camera frame, and its derivative by the point where asked for. False, with
+// nothing written, where the point is not in front of the camera.
+inline bool pointResidual(const Camera& camera, const WhitenedPixel& measured, const Eigen::Vector3d& point,
+                          Eigen::Vector2d& residual, Matrix23d* by_point) {
+  if (!inFront(camera, point)) return false;
+  if (!by_point) {
+    residual = measured.whitening * (project(camera, point) - measured.pixel);
+    return true;
+  }
+  Matrix23d projection;
+  residual = measured.whitening * (project(camera, point, &projection) - measured.pixel);
+  by_point->noalias() = measured.whitening * projection;
+  return true;
+}
+
+// Residual of a known point (world frame), and its derivative by the camera's pose.
+inline bool poseResidual(const Camera& camera, const WhitenedPixel& measured, const CameraFrame& frame,
+                         const Eigen::Vector3d& point, Eigen::Vector2d& residual, Matrix26d* by_pose) {
+  const Eigen::Vector3d seen = frame.world_R_camera.transpose() * (point - frame.centre);
+  if (!by_pose) return pointResidual(camera, measured, seen, residual, nullptr);
+  Matrix23d by_point;
+  if (!pointResidual(camera, measured, seen, residual, &by_point)) return false;
+  by_pose->leftCols<3>() = -by_point;
+  by_pose->rightCols<3>().noalias() = by_point * skew(seen);
+  return true;
+}
+
+struct BundleDerivatives {
+  Matrix26d by_host;
+  Matrix26d by_target;
+  Eigen::Vector2d by_inverse_depth;
+};
+
+// Residual in a target camera of the point at `inverse_depth` along the unit `host_bearing`, and its derivatives. Works
+// on the point divided by its depth, R_th f + rho t_th, so that infinitely far points are nothing special.
+inline bool bundleResidual(const Camera& camera, const WhitenedPixel& measured, const CameraFrame& host,
+                           const CameraFrame& target, const Eigen::Vector3d& host_bearing, double inverse_depth,
+                           Eigen::Vector2d& residual, BundleDerivatives* derivatives) {
+  const Eigen::Vector3d baseline = target.world_R_camera.transpose() * (host.centre - target.centre);
+  const Eigen::Vector3d ray = host.world_R_camera * host_bearing;
+  const Eigen::Vector3d seen = target.world_R_camera.transpose() * ray + inverse_depth * baseline;
+  if (!derivatives) return pointResidual(camera, measured, seen, residual, nullptr);
+  Matrix23d by_point;
+  if (!pointResidual(camera, measured, seen, residual, &by_point)) return false;
+  const Matrix23d by_world = by_point * target.world_R_camera.transpose();
+  const Matrix23d by_host_point = by_world * host.world_R_camera;
+  derivatives->by_host.leftCols<3>() = inverse_depth * by_host_point;
+  derivatives->by_host.rightCols<3>().noalias() = -by_host_point * skew(host_bearing);
+  derivatives->by_target.leftCols<3>() = -inverse_depth * by_point;
+  derivatives->by_target.rightCols<3>().noalias() = by_point * skew(seen);
+  derivatives->by_inverse_depth.noalias() = by_point * baseline;
+  return true;
+}
+
+// Huber's weight of a residual of this norm: what multiplies its square in reweighted least squares.
+inline double huberWeight(double norm, double huber) { return norm <= huber ? 1.0 : huber / norm; }
+
+// Huber's loss of a squared norm: the square itself up to huber^2, linear in the norm beyond.
+inline double huberLoss(double squared_norm, double huber) {
+  return squared_norm <= huber * huber ? squared_norm : 2 * huber * std::sqrt(squared_norm) - huber * huber;
+}
+
+}  // namespace edgeslam

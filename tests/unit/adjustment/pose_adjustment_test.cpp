@@ -1,0 +1,294 @@
+#include "adjustment/pose_adjustment.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <limits>
+
+#include "synthetic_scene.h"
+
+namespace edgeslam::test {
+namespace {
+
+struct Trial {
+  Camera camera;
+  Pose truth;
+  std::vector<PoseObservation> observations;
+};
+
+struct TrialOptions {
+  int count = 200;
+  double sigma_normal = 0.5;
+  double sigma_tangent = 0.5;
+  double noise = 1;      // times the sigmas
+  double spread = M_PI;  // of the normals' angles [rad], around 0
+  CameraModel model = CameraModel::pinhole_radial_tangential;
+  bool distorted = true;
+};
+
+Trial makeTrial(Random& random, const TrialOptions& options) {
+  Trial trial;
+  trial.camera = testCamera(options.model);
+  if (!options.distorted) trial.camera.distortion.fill(0);
+  trial.truth = randomPose(random, 2, 1);
+  for (int i = 0; i < options.count; ++i) {
+    const Eigen::Vector2d pixel = randomPixel(random, trial.camera);
+    PoseObservation o;
+    o.point = trial.truth * (bearing(trial.camera, pixel) * uniform(random, 1, 6));
+    o.measurement = measure(random, pixel, uniform(random, -options.spread, options.spread), options.sigma_normal,
+                            options.sigma_tangent, options.noise);
+    trial.observations.push_back(o);
+  }
+  return trial;
+}
+
+// The right-hand update that takes the truth to the estimate.
+Vector6d poseError(const Pose& estimate, const Pose& truth) {
+  const Pose difference = truth.inverse() * estimate;
+  Vector6d error;
+  error << difference.translation, rotationLog(difference.rotation);
+  return error;
+}
+
+double distance(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }
+
+bool sameBytes(const Pose& a, const Pose& b) {
+  return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
+}
+
+class PoseAdjustmentOfModel : public testing::TestWithParam<CameraModel> {};
+
+TEST_P(PoseAdjustmentOfModel, RecoversExactPoseFromPerturbedStart) {
+  Random random(1);
+  for (int run = 0; run < 50; ++run) {
+    TrialOptions options;
+    options.noise = 0;
+    options.model = GetParam();
+    const Trial trial = makeTrial(random, options);
+    const Pose start = perturbed(random, trial.truth, 0.1, 5 * M_PI / 180);
+    const PoseResult result = adjustPose(trial.camera, start, trial.observations, {});
+    ASSERT_TRUE(result.converged);
+    EXPECT_LT(distance(result.world_T_camera, trial.truth), 1e-6);
+    EXPECT_LT(rotationAngle(result.world_T_camera.rotation, trial.truth.rotation), 1e-6);
+    EXPECT_EQ(result.inlier_count, 200);
+  }
+}
+
+TEST_P(PoseAdjustmentOfModel, EdgesOfEveryDirectionRecoverThePose) {
+  Random random(2);
+  for (int run = 0; run < 50; ++run) {
+    TrialOptions options;
+    options.sigma_tangent = 1000;
+    options.model = GetParam();
+    const Trial trial = makeTrial(random, options);
+    const Pose start = perturbed(random, trial.truth, 0.1, 5 * M_PI / 180);
+    const PoseResult result = adjustPose(trial.camera, start, trial.observations, {});
+    ASSERT_TRUE(result.converged);
+    EXPECT_LT(distance(result.world_T_camera, trial.truth), 0.03);
+    EXPECT_LT(rotationAngle(result.world_T_camera.rotation, trial.truth.rotation), 0.01);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, PoseAdjustmentOfModel,
+                         testing::Values(CameraModel::pinhole_radial_tangential, CameraModel::kannala_brandt));
+
+TEST(PoseAdjustment, RecoversWithThirtyPercentOutliers) {
+  Random random(3);
+  for (int run = 0; run < 100; ++run) {
+    Trial trial = makeTrial(random, {});
+    std::vector<char> is_outlier(trial.observations.size(), 0);
+    for (std::size_t i = 0; i < trial.observations.size(); ++i) {
+      if (uniform(random, 0, 1) > 0.3) continue;
+      const Eigen::Vector2d truth = trial.observations[i].measurement.pixel;
+      do {
+        trial.observations[i].measurement.pixel = randomPixel(random, trial.camera);
+      } while ((trial.observations[i].measurement.pixel - truth).norm() < 10);
+      is_outlier[i] = 1;
+    }
+    const Pose start = perturbed(random, trial.truth, 0.1, 5 * M_PI / 180);
+    PoseOptions options;
+    options.iterations = 20;
+    const PoseResult result = adjustPose(trial.camera, start, trial.observations, options);
+    ASSERT_TRUE(result.converged) << "run " << run;
+    EXPECT_LT(distance(result.world_T_camera, trial.truth), 0.02) << "run " << run;
+    EXPECT_LT(rotationAngle(result.world_T_camera.rotation, trial.truth.rotation), 0.005) << "run " << run;
+    int taken = 0;
+    for (std::size_t i = 0; i < is_outlier.size(); ++i) taken += is_outlier[i] && result.inliers[i];
+    EXPECT_EQ(taken, 0) << "run " << run;
+    EXPECT_GT(result.inlier_count, 110) << "run " << run;
+  }
+}
+
+TEST(PoseAdjustment, ParallelEdgesAreNotTakenForAPose) {
+  Random random(4);
+  for (int run = 0; run < 30; ++run) {
+    TrialOptions options;
+    options.sigma_tangent = 1000;
+    options.spread = 0;         // every normal along the image's x: nothing tells of a move along the camera's y,
+    options.distorted = false;  // except, a little, the distortion
+    const Trial trial = makeTrial(random, options);
+    const Pose start = perturbed(random, trial.truth, 0.02, 0.01);
+    const PoseResult result = adjustPose(trial.camera, start, trial.observations, {});
+    if (!result.converged) continue;
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(result.covariance);
+    const double largest = std::sqrt(eigen.eigenvalues()(5));
+    EXPECT_GT(largest, 0.1);
+    // What the covariance claims holds for the error.
+    const Vector6d error = poseError(result.world_T_camera, trial.truth);
+    EXPECT_LT(error.dot(result.covariance.ldlt().solve(error)), 40);
+  }
+}
+
+TEST(PoseAdjustment, CovarianceIsHonest) {
+  for (const double sigma_tangent : {0.5, 1000.0}) {
+    Random random(5);
+    constexpr int kTrials = 300;
+    double sum = 0;
+    for (int run = 0; run < kTrials; ++run) {
+      TrialOptions options;
+      options.sigma_tangent = sigma_tangent;
+      const Trial trial = makeTrial(random, options);
+      const Pose start = perturbed(random, trial.truth, 0.05, 0.03);
+      const PoseResult result = adjustPose(trial.camera, start, trial.observations, {});
+      ASSERT_TRUE(result.converged);
+      const Vector6d error = poseError(result.world_T_camera, trial.truth);
+      sum += error.dot(result.covariance.ldlt().solve(error)) / 6;
+    }
+    RecordProperty("nees_sigma_tangent_" + std::to_string(static_cast<int>(sigma_tangent)),
+                   std::to_string(sum / kTrials));
+    EXPECT_GT(sum / kTrials, 0.8) << sigma_tangent;
+    EXPECT_LT(sum / kTrials, 1.3) << sigma_tangent;
+  }
+}
+
+TEST(PoseAdjustment, CovarianceCountsUncertainDepths) {
+  Random random(6);
+  constexpr int kTrials = 300;
+  double sum = 0, squares = 0, squares_ignorant = 0;
+  for (int run = 0; run < kTrials; ++run) {
+    Trial trial = makeTrial(random, {});
+    for (PoseObservation& o : trial.observations) {
+      o.depth_sigma_px = uniform(random, 0, 3);
+      const double angle = uniform(random, -M_PI, M_PI);
+      o.depth_direction = {std::cos(angle), std::sin(angle)};
+      o.measurement.pixel += gaussian(random, o.depth_sigma_px) * o.depth_direction;
+    }
+    const Pose start = perturbed(random, trial.truth, 0.05, 0.03);
+    PoseResult result = adjustPose(trial.camera, start, trial.observations, {});
+    ASSERT_TRUE(result.converged);
+    const Vector6d error = poseError(result.world_T_camera, trial.truth);
+    sum += error.dot(result.covariance.ldlt().solve(error)) / 6;
+    squares += error.squaredNorm();
+    for (PoseObservation& o : trial.observations) o.depth_sigma_px = 0;
+    result = adjustPose(trial.camera, start, trial.observations, {});
+    squares_ignorant += poseError(result.world_T_camera, trial.truth).squaredNorm();
+  }
+  EXPECT_GT(sum / kTrials, 0.8);
+  EXPECT_LT(sum / kTrials, 1.3);
+  EXPECT_LT(squares, squares_ignorant);
+}
+
+TEST(PoseAdjustment, CovarianceGrowsWithWhatTheSigmasDoNotExplain) {
+  Random random(7);
+  TrialOptions calm, rough;
+  rough.noise = 1.8;
+  PoseOptions options;
+  options.outlier = 10;
+  const Trial calm_trial = makeTrial(random, calm);
+  random.seed(7);
+  const Trial rough_trial = makeTrial(random, rough);
+  const PoseResult calm_result = adjustPose(calm_trial.camera, calm_trial.truth, calm_trial.observations, options);
+  const PoseResult rough_result = adjustPose(rough_trial.camera, rough_trial.truth, rough_trial.observations, options);
+  ASSERT_TRUE(calm_result.converged && rough_result.converged);
+  EXPECT_GT(rough_result.covariance.trace(), 1.8 * calm_result.covariance.trace());
+  EXPECT_GT(rough_result.rms, calm_result.rms);
+}
+
+TEST(PoseAdjustment, TooFewObservationsLeaveThePose) {
+  Random random(8);
+  TrialOptions few;
+  few.count = 9;
+  const Trial trial = makeTrial(random, few);
+  const Pose start = perturbed(random, trial.truth, 0.1, 0.05);
+  const PoseResult result = adjustPose(trial.camera, start, trial.observations, {});
+  EXPECT_FALSE(result.converged);
+  EXPECT_TRUE(sameBytes(result.world_T_camera, start));
+  EXPECT_EQ(result.inliers.size(), 9u);
+  EXPECT_FALSE(adjustPose(trial.camera, start, {}, {}).converged);
+}
+
+TEST(PoseAdjustment, TooFewInliersLeaveThePose) {
+  Random random(9);
+  Trial trial = makeTrial(random, {});
+  for (PoseObservation& o : trial.observations) o.measurement.pixel = randomPixel(random, trial.camera);
+  PoseOptions options;
+  options.fewest = 30;
+  const Pose start = trial.truth;
+  const PoseResult result = adjustPose(trial.camera, start, trial.observations, options);
+  EXPECT_FALSE(result.converged);
+  EXPECT_TRUE(sameBytes(result.world_T_camera, start));
+}
+
+TEST(PoseAdjustment, PointsBehindTheCameraAreOutliers) {
+  Random random(10);
+  Trial trial = makeTrial(random, {});
+  for (int i = 0; i < 40; ++i) {
+    PoseObservation& o = trial.observations[static_cast<std::size_t>(i)];
+    o.point = trial.truth * (-(trial.truth.inverse() * o.point));
+  }
+  const Pose start = perturbed(random, trial.truth, 0.05, 0.03);
+  const PoseResult result = adjustPose(trial.camera, start, trial.observations, {});
+  ASSERT_TRUE(result.converged);
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_FALSE(result.inliers[i]);
+  EXPECT_LT(distance(result.world_T_camera, trial.truth), 0.02);
+}
+
+TEST(PoseAdjustment, ValuesThatAreNoNumbersAreOutliers) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Random random(11);
+  Trial trial = makeTrial(random, {});
+  trial.observations[0].measurement.pixel.x() = kNan;
+  trial.observations[1].point.y() = kNan;
+  trial.observations[2].point.z() = kInfinity;
+  trial.observations[3].measurement.sigma_normal = 0;
+  trial.observations[4].measurement.normal.setConstant(kNan);
+  trial.observations[5].depth_sigma_px = kNan;
+  trial.observations[6].depth_sigma_px = kInfinity;
+  trial.observations[7].point = trial.truth.translation;
+  const PoseResult result = adjustPose(trial.camera, trial.truth, trial.observations, {});
+  ASSERT_TRUE(result.converged);
+  for (const std::size_t i : {0u, 1u, 2u, 3u, 4u, 6u, 7u}) EXPECT_FALSE(result.inliers[i]) << i;
+  EXPECT_LT(distance(result.world_T_camera, trial.truth), 0.02);
+  EXPECT_TRUE(result.covariance.allFinite());
+
+  Pose start = trial.truth;
+  start.translation.x() = kNan;
+  EXPECT_FALSE(adjustPose(trial.camera, start, trial.observations, {}).converged);
+}
+
+TEST(PoseAdjustment, OnePointSeenManyTimesIsNoPose) {
+  Random random(12);
+  TrialOptions options;
+  options.noise = 0;
+  Trial trial = makeTrial(random, options);
+  for (PoseObservation& o : trial.observations) o = trial.observations[0];
+  const PoseResult result = adjustPose(trial.camera, trial.truth, trial.observations, {});
+  EXPECT_FALSE(result.converged);
+}
+
+TEST(PoseAdjustment, SameInputSameBytes) {
+  Random random(13);
+  TrialOptions options;
+  options.sigma_tangent = 1000;
+  const Trial trial = makeTrial(random, options);
+  const Pose start = perturbed(random, trial.truth, 0.1, 0.08);
+  const PoseResult first = adjustPose(trial.camera, start, trial.observations, {});
+  const PoseResult second = adjustPose(trial.camera, start, trial.observations, {});
+  EXPECT_TRUE(sameBytes(first.world_T_camera, second.world_T_camera));
+  EXPECT_EQ(first.covariance, second.covariance);
+}
+
+}  // namespace
+}  // namespace edgeslam::test
