@@ -1,0 +1,70 @@
+#include "app/check_config_command.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "app/command_line.h"
+#include "app/configuration.h"
+#include "app/configuration_keys.h"
+
+namespace edgeslam {
+namespace {
+
+void listDifferences(const Configuration& configuration) {
+  Settings settings = configuration.settings;
+  Settings defaults;
+  const std::vector<ConfigurationKey> keys = configurationKeys(settings);
+  const std::vector<ConfigurationKey> default_keys = configurationKeys(defaults);
+  std::string changes;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const std::string value = valueText(keys[i].field), usual = valueText(default_keys[i].field);
+    if (value != usual) changes += "  " + keys[i].path + ": " + value + " (default " + usual + ")\n";
+  }
+  std::cout << configuration.source << ": good; "
+            << (changes.empty() ? "all settings are the defaults" : "differs from the defaults in") << "\n"
+            << changes;
+  if (configuration.camera) {
+    const Camera& camera = *configuration.camera;
+    std::cout << "  camera: " << camera.width << " x " << camera.height << " px, "
+              << (camera.model == CameraModel::kannala_brandt ? "Kannala-Brandt fisheye" : "pinhole, radial-tangential")
+              << ", focal lengths " << camera.fx << " " << camera.fy << " px\n";
+  } else {
+    std::cout << "  camera: not given; taken from beside the recording\n";
+  }
+}
+
+int checkConfiguration(const std::string& path) {
+  std::vector<std::string> problems;
+  const Configuration configuration = readConfiguration(path, problems);
+  for (const std::string& problem : problems) std::cerr << problem << "\n";
+  if (!problems.empty()) return exit_bad_input;
+  listDifferences(configuration);
+  return exit_done;
+}
+
+}  // namespace
+
+void addCheckConfigCommand(CLI::App& app, int& exit_code) {
+  struct Options {
+    std::string path;
+    bool print_default = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("check-config", "Check a configuration file and say what it changes");
+  CLI::Option* file = command->add_option("FILE", options->path, "Configuration file (YAML)");
+  CLI::Option* print = command->add_flag("--print-default", options->print_default,
+                                         "Print the default configuration, with documentation");
+  file->excludes(print);
+  command->callback([options, &exit_code] {
+    if (options->print_default) {
+      std::cout << defaultConfigurationText();
+    } else if (options->path.empty()) {
+      throw CLI::RequiredError("FILE");
+    } else {
+      exit_code = checkConfiguration(options->path);
+    }
+  });
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,87 @@
+#include "app/command_line.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "app/check_config_command.h"
+#if __has_include("app/evaluate_command.h")
+#include "app/evaluate_command.h"
+#endif
+#if __has_include("app/replay_command.h")
+#include "app/replay_command.h"
+#endif
+#if __has_include("app/simulate_command.h")
+#include "app/simulate_command.h"
+#endif
+#include "edgeslam/input_error.h"
+
+namespace edgeslam {
+namespace {
+
+int tellFailure(ExitCode code, const std::string& message) {
+  std::cerr << "edgeslam: " << message << std::endl;
+  return code;
+}
+
+// A reader that went away (`| head`) is no failure; a full disk behind the standard output is.
+bool standardOutputLost() {
+  std::cout.flush();
+  if (std::cout) return false;
+  struct stat status {};
+  return fstat(STDOUT_FILENO, &status) != 0 || !(S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode));
+}
+
+int parseAndRun(int argc, const char* const* argv) {
+  int exit_code = exit_done;
+  CLI::App app{"Monocular SLAM on image edges: poses and a 3D map from one camera.", "edgeslam"};
+  app.set_version_flag("--version", std::string("edgeslam ") + EDGESLAM_VERSION);
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 1 the run failed, 2 wrong use or bad input.");
+#if __has_include("app/replay_command.h")
+  addReplayCommand(app, exit_code);
+#endif
+#if __has_include("app/evaluate_command.h")
+  addEvaluateCommand(app, exit_code);
+#endif
+#if __has_include("app/simulate_command.h")
+  addSimulateCommand(app, exit_code);
+#endif
+  addCheckConfigCommand(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) {  // --help, --version
+    app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    const CLI::App* named = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
+    const std::string help = named == &app ? "edgeslam --help" : "edgeslam " + named->get_name() + " --help";
+    return tellFailure(exit_bad_input, std::string(error.what()) + "; see " + help);
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int runCommandLine(int argc, const char* const* argv) {
+  int exit_code = exit_failed;
+  try {
+    exit_code = parseAndRun(argc, argv);
+  } catch (const InputError& error) {
+    exit_code = tellFailure(exit_bad_input, error.what());
+  } catch (const std::bad_alloc&) {
+    exit_code = tellFailure(exit_failed, "out of memory");
+  } catch (const std::exception& error) {  // cv::Exception among them
+    exit_code = tellFailure(exit_failed, std::string("internal error: ") + error.what());
+  }
+  if (standardOutputLost()) {
+    return tellFailure(exit_bad_input, "the standard output cannot be written (is the disk full?)");
+  }
+  return exit_code;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,194 @@
+#include "app/configuration.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "app/configuration_camera.h"
+#include "app/configuration_keys.h"
+#include "app/configuration_suggestion.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr std::size_t largest_file = 1 << 20;  // [bytes]
+
+struct Problem {
+  int line = -1;  // from 0; negative where the problem has no line
+  std::string text;
+};
+
+std::string readText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": cannot be opened");
+  std::string text(largest_file + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad() || (file.gcount() == 0 && !file.eof())) throw InputError(path + ": cannot be read (a folder?)");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > largest_file) throw InputError(path + ": over 1 MiB, so it is no configuration");
+  return text;
+}
+
+// Reads one file's document; all that is wrong goes to `problems`.
+class Reader {
+ public:
+  Reader(Configuration& configuration, std::vector<Problem>& problems)
+      : configuration_(configuration), problems_(problems), keys_(configurationKeys(configuration.settings)) {
+    for (const ConfigurationKey& key : keys_) {
+      sections_.insert(key.path.substr(0, key.path.find('.')));
+      if (!key.isHeading()) names_.push_back(key.path);
+    }
+    for (const std::string& name : cameraKeys()) names_.push_back(name);
+    sections_.insert("camera");
+  }
+
+  void readDocument(const YAML::Node& document) {
+    if (document.IsNull()) return;
+    if (!document.IsMap()) return tell(document.Mark().line, "a mapping of sections is expected here");
+    forEachKey(document, "", [this](const std::string& name, const YAML::Node& key, const YAML::Node& value) {
+      if (sections_.count(name) == 0) return tellUnknown(key.Mark().line, name);
+      readSection(name, key.Mark().line, value);
+    });
+  }
+
+ private:
+  void tell(int line, const std::string& problem) { problems_.push_back({line, problem}); }
+
+  void tellUnknown(int line, const std::string& name) {
+    std::vector<std::string> candidates = names_;
+    if (name.find('.') == std::string::npos) candidates.insert(candidates.end(), sections_.begin(), sections_.end());
+    const std::string meant = closestKey(name, candidates);
+    tell(line, name + " is not a key" + (meant.empty() ? "" : "; did you mean " + meant + "?"));
+  }
+
+  template <typename Use>
+  void forEachKey(const YAML::Node& mapping, const std::string& prefix, const Use& use) {
+    std::map<std::string, int> seen;  // line of each name
+    for (const auto& entry : mapping) {
+      const int line = entry.first.Mark().line;
+      if (!entry.first.IsScalar()) {
+        tell(line, "a key must be a plain word");
+        continue;
+      }
+      const std::string name = prefix + entry.first.Scalar();
+      const auto [first, is_new] = seen.emplace(name, line);
+      if (!is_new) {
+        tell(line, name + " is given twice; first in line " + std::to_string(first->second + 1));
+        continue;
+      }
+      use(name, entry.first, entry.second);
+    }
+  }
+
+  void readSection(const std::string& section, int line, const YAML::Node& node) {
+    if (node.IsNull()) return;  // all of its keys commented out
+    if (!node.IsMap()) return tell(line, section + ": a mapping of keys is expected");
+    forEachKey(node, section + ".", [this](const std::string& name, const YAML::Node& key, const YAML::Node& value) {
+      readKey(name, key.Mark().line, value);
+    });
+    if (section == "camera") {
+      readCameraSection(node, configuration_, [this](int at, const std::string& problem) { tell(at, problem); });
+    }
+  }
+
+  void readKey(const std::string& name, int line, const YAML::Node& value) {
+    if (std::find(names_.begin(), names_.end(), name) == names_.end()) return tellUnknown(line, name);
+    const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const auto& k) { return k.path == name; });
+    if (key == keys_.end()) return;  // of the camera's section
+    std::string wrong;
+    if (!value.IsScalar()) {
+      wrong = value.IsNull() ? "has no value" : "a list or mapping";
+    } else if (value.Tag() == "!") {
+      wrong = "\"" + value.Scalar() + "\" is a quoted text";
+    } else {
+      wrong = setValue(*key, value.Scalar());
+    }
+    if (!wrong.empty()) tell(line, name + ": " + wrong + "; expected " + expectedValue(*key));
+  }
+
+  Configuration& configuration_;
+  std::vector<Problem>& problems_;
+  std::vector<ConfigurationKey> keys_;
+  std::vector<std::string> names_;  // of all keys, with their section
+  std::set<std::string> sections_;
+};
+
+void readDocuments(const std::string& text, Configuration& configuration, std::vector<Problem>& problems) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) problems.push_back({documents[1].Mark().line, "a second document; only one is expected"});
+    if (!documents.empty()) Reader(configuration, problems).readDocument(documents.front());
+  } catch (const YAML::Exception& error) {
+    problems.push_back({error.mark.line, "is not YAML: " + error.msg});
+  }
+}
+
+void appendSettings(std::string& text, Settings settings, bool documented) {
+  std::string section;
+  for (const ConfigurationKey& key : configurationKeys(settings)) {
+    if (key.isHeading()) {
+      if (documented) text += "\n# " + key.documentation + ".";
+      continue;
+    }
+    const std::size_t dot = key.path.find('.');
+    if (key.path.substr(0, dot) != section) {
+      section = key.path.substr(0, dot);
+      text += (documented ? "\n" : "") + section + ":\n";
+    }
+    if (documented) text += "  # " + key.documentation + " (" + expectedValue(key) + ")\n";
+    text += "  " + key.path.substr(dot + 1) + ": " + valueText(key.field) + "\n";
+  }
+}
+
+}  // namespace
+
+Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems) {
+  Configuration configuration;
+  configuration.source = path;
+  std::vector<Problem> found;
+  try {
+    readDocuments(readText(path), configuration, found);
+  } catch (const InputError& error) {
+    problems.emplace_back(error.what());
+    return configuration;
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Problem& a, const Problem& b) { return a.line < b.line; });
+  for (const Problem& problem : found) {
+    const std::string line = problem.line < 0 ? "" : ":" + std::to_string(problem.line + 1);
+    problems.push_back(path + line + ": " + problem.text);
+  }
+  return configuration;
+}
+
+Configuration readConfiguration(const std::string& path) {
+  std::vector<std::string> problems;
+  Configuration configuration = readConfiguration(path, problems);
+  if (problems.empty()) return configuration;
+  const std::string others =
+      problems.size() == 1 ? "" : " (`edgeslam check-config` lists " + std::to_string(problems.size()) + " problems)";
+  throw InputError(problems.front() + others);
+}
+
+std::string formatConfiguration(const Configuration& configuration) {
+  std::string text = formatCameraSection(configuration);
+  appendSettings(text, configuration.settings, false);
+  return text;
+}
+
+std::string defaultConfigurationText() {
+  std::string text =
+      "# Configuration of Edge SLAM: every key with its meaning, its range and its default. Leave out what you do not "
+      "change.\n"
+      "# `edgeslam check-config FILE` says what is wrong with a file, or what it changes. Lengths of the scene are in "
+      "map units,\n"
+      "# a sigma is a standard deviation.\n\n";
+  text += cameraSectionDocumentation();
+  appendSettings(text, Settings{}, true);
+  return text;
+}
+
+}  // namespace edgeslam

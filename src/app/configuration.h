@@ -1,0 +1,35 @@
+// The configuration file: all settings of the method, and the camera with its place on the robot (design, section 6).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edgeslam/input_error.h"
+#include "geometry/camera.h"
+#include "geometry/pose.h"
+#include "pipeline/settings.h"
+
+namespace edgeslam {
+
+struct Configuration {
+  Settings settings;
+  std::optional<Camera> camera;  // where the file gives one
+  Pose body_T_camera;            // of the camera on the robot, translation [m]; the identity unless the file gives it
+  std::string source;            // path of the file; empty for the defaults
+};
+
+// An empty file gives the defaults. Throws InputError `FILE:LINE: KEY: ...` at the first problem.
+Configuration readConfiguration(const std::string& path);
+
+// Likewise, but collects all problems, one line each in the order of the file, and throws nothing: where there are any,
+// the configuration is not to be used.
+Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems);
+
+// The effective configuration as YAML: reads back as the same one.
+std::string formatConfiguration(const Configuration& configuration);
+
+// Every key with documentation, unit, range and default: the text of firmware_cfg/edgeslam.yaml.
+std::string defaultConfigurationText();
+
+}  // namespace edgeslam
