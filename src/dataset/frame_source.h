@@ -16,8 +16,8 @@ namespace edgeslam {
 struct Frame {
   std::int64_t index = 0;  // in the source, counted from 0, unreadable ones included
   std::int64_t time_ns = 0;
-  cv::Mat grey;            // CV_8U, the camera's size; empty where the frame could not be read
-  std::string problem;     // why it could not be read; empty otherwise
+  cv::Mat grey;         // CV_8U, the camera's size; empty where the frame could not be read
+  std::string problem;  // why it could not be read; empty otherwise
 };
 
 class FrameSource {
@@ -31,7 +31,8 @@ class FrameSource {
   virtual std::string kind() const = 0;
   // The calibration that lies beside the frames (camera.yaml, EuRoC's sensor.yaml), if there is one.
   virtual std::optional<Camera> camera() const = 0;
-  // Path of the ground truth beside the frames (groundtruth.txt, EuRoC's state_groundtruth_estimate0/data.csv), or empty.
+  // Path of the ground truth beside the frames (groundtruth.txt, EuRoC's state_groundtruth_estimate0/data.csv), or
+  // empty.
   virtual std::string groundTruthPath() const = 0;
 };
 

@@ -1,0 +1,127 @@
+#include "dataset/frame_source.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "dataset/calibration_file.h"
+#include "dataset/folder_source.h"
+#include "dataset/video_source.h"
+
+namespace edgeslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isFile(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+// Names of the files in a folder, sorted.
+std::vector<std::string> fileNames(const fs::path& folder) {
+  std::error_code error;
+  std::vector<std::string> names;
+  fs::directory_iterator entries(folder, error);
+  if (error) throw InputError(folder.string() + ": cannot be listed: " + error.message());
+  for (const fs::directory_entry& entry : entries) {
+    if (isFile(entry.path())) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool isCameraChain(const std::string& name) {
+  return name.rfind("camchain", 0) == 0 && fs::path(name).extension() == ".yaml";
+}
+
+// The calibration in one of the folders, looked for in order; empty where there is none.
+std::string findCalibration(const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    for (const char* name : {"camera.yaml", "camera_info.yaml"}) {
+      if (isFile(folder / name)) return (folder / name).string();
+    }
+    const std::vector<std::string> names = fileNames(folder);
+    const auto chain = std::find_if(names.begin(), names.end(), isCameraChain);
+    if (chain != names.end()) return (folder / *chain).string();
+    if (isFile(folder / "sensor.yaml")) return (folder / "sensor.yaml").string();
+  }
+  return "";
+}
+
+FrameCompanions findCompanions(const std::vector<fs::path>& folders) {
+  FrameCompanions companions;
+  companions.camera_path = findCalibration(folders);
+  if (!companions.camera_path.empty()) companions.camera = readCalibration(companions.camera_path);
+  for (const fs::path& folder : folders) {
+    for (const char* name : {"groundtruth.txt", "state_groundtruth_estimate0/data.csv"}) {
+      if (isFile(folder / name) && companions.ground_truth_path.empty()) {
+        companions.ground_truth_path = (folder / name).string();
+      }
+    }
+  }
+  return companions;
+}
+
+// EuRoC's cam0, whether the folder given is the sequence, its mav0, or cam0 itself; empty where it is none of them.
+fs::path findEurocCamera(const fs::path& folder) {
+  for (const fs::path& camera : {folder / "mav0" / "cam0", folder / "cam0", folder}) {
+    if (isFile(camera / "data.csv") && fs::is_directory(camera / "data")) return camera;
+  }
+  return {};
+}
+
+std::unique_ptr<FrameSource> openFolder(const fs::path& folder) {
+  if (isFile(folder / "rgb.txt")) {
+    return makeFolderSource("TUM RGB-D folder", readTumImageList((folder / "rgb.txt").string()),
+                            findCompanions({folder}));
+  }
+  if (isFile(folder / "associations.txt")) {
+    return makeFolderSource("TUM RGB-D folder (associations.txt)",
+                            readTumImageList((folder / "associations.txt").string()), findCompanions({folder}));
+  }
+  const fs::path euroc_camera = findEurocCamera(folder);
+  if (!euroc_camera.empty()) {
+    // The ground truth lies beside cam0, and a calibration of the user's own beside mav0.
+    std::vector<fs::path> folders{euroc_camera};
+    if (euroc_camera != folder) folders.push_back(euroc_camera.parent_path());
+    if (folders.back() != folder) folders.push_back(folder);
+    if (euroc_camera == folder) folders.push_back(fs::absolute(folder / "").parent_path().parent_path());
+    return makeFolderSource("EuRoC folder", readEurocImageList((euroc_camera / "data.csv").string()),
+                            findCompanions(folders));
+  }
+
+  const std::vector<std::string> names = fileNames(folder);
+  std::vector<std::string> videos;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(videos), isVideoFileName);
+  if (videos.size() > 1) {
+    throw InputError(folder.string() + ": holds several videos (" + videos[0] + ", " + videos[1] +
+                     "); give the path of one of them");
+  }
+  if (videos.size() == 1) {
+    const std::string video = (folder / videos[0]).string();
+    const fs::path times = folder / "times.txt";
+    if (isFile(times)) return makeStampedVideoSource(video, times.string(), findCompanions({folder}));
+    return makeVideoSource(video, findCompanions({folder}));
+  }
+  if (std::any_of(names.begin(), names.end(), isImageFileName)) {
+    return makeFolderSource("folder of images", imagesNamedByTime(folder.string()), findCompanions({folder}));
+  }
+  throw InputError(
+      folder.string() + (fs::is_empty(folder) ? ": is an empty folder" : ": holds no frames") +
+      "; expected rgb.txt (TUM RGB-D), associations.txt (ICL-NUIM), mav0/cam0 (EuRoC), a video, or images " +
+      "named by their time stamps");
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> openFrameSource(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw InputError(path + ": no such folder or video");
+  if (fs::is_directory(status)) return openFolder(path);
+  const fs::path folder = fs::path(path).parent_path();
+  return makeVideoSource(path, findCompanions({folder.empty() ? fs::path(".") : folder}));
+}
+
+}  // namespace edgeslam
