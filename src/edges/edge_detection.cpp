@@ -14,9 +14,6 @@
 namespace edgeslam {
 namespace {
 
-// A crossing this far outside its pixel's cell still counts: noise must not tear a hole into an edge [px].
-constexpr float kCellMargin = 0.15F;
-
 struct DogImages {
   cv::Mat narrow;  // CV_16U, blurGrey's scale
   cv::Mat dog;     // CV_16S, narrower minus wider
@@ -78,12 +75,13 @@ void addZeroCrossing(const DogImages& images, int x, int y, const EdgeOptions& o
   // The grey gradient gives the normal: the DoG's own is thrice as noisy.
   const float steepness = std::sqrt(squared);
   const Eigen::Vector2f normal = gradient / steepness;
-  const float distance = distanceToZero(images.dog, x, y, normal, options.plane_fit_radius, options.sign_balance);
-  // Within half a pixel along this axis a straight edge has one pixel in each row or column.
-  const float offset = distance / std::max(std::abs(normal.x()), std::abs(normal.y()));
-  if (!(std::abs(offset) <= 0.5F + kCellMargin)) return;
+  const bool along_row = std::abs(normal.x()) >= std::abs(normal.y());
+  const float offset = offsetOfZero(images.dog, x, y, along_row);
+  if (std::isnan(offset)) return;
+  if (!isEdgeLike(images.dog, x, y, normal, options.plane_fit_radius, options.sign_balance)) return;
   EdgePoint point;
-  point.pixel = Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) + distance * normal;
+  point.pixel = Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) +
+                offset * (along_row ? normal.x() : normal.y()) * normal;
   point.normal = normal;
   point.gradient = steepness;
   edges.index.at<int>(y, x) = static_cast<int>(edges.points.size());
