@@ -7,28 +7,22 @@
 #include <vector>
 
 #include "edges/edge_detection.h"
+#include "edges/structure_tensor.h"
 
 namespace edgeslam {
 
-// Mean over a window of g g^T for the grey gradient g: eigenvalues l1 >= l2 [grey^2/px^2] and the unit direction of l1.
-struct StructureTensor {
-  float l1 = 0;
-  float l2 = 0;
-  Eigen::Vector2f direction = Eigen::Vector2f::UnitX();
-};
-
 struct PointChoiceOptions {
-  int count = 550;              // points tracked at once
-  double spacing = 6;           // least distance between two points [px]
-  int cell = 40;                // grid cell [px]
-  double corner_share = 0.5;    // most of `count` that corner-like points may take first
-  int tensor_window = 15;       // side of the structure tensor's window [px]
-  double corner_ratio = 0.15;   // corner-like: l2 > corner_ratio * l1 ...
-  double corner_strength = 6;   // ... and l2 > corner_strength [grey^2/px^2]
-  double noise = 4;             // of the structure tensor [grey^2/px^2]
-  double sigma_edge = 0.5;      // across an edge [px]
-  double sigma_corner = 0.17;   // of a corner-like point, across its stronger direction [px]
-  double border = 12;           // points keep this distance from the image's border [px]
+  int count = 550;             // points tracked at once
+  double spacing = 6;          // least distance between two points [px]
+  int cell = 40;               // grid cell [px]
+  double corner_share = 0.5;   // most of `count` that corner-like points may take first
+  int tensor_window = 15;      // side of the structure tensor's window [px]
+  double corner_ratio = 0.15;  // corner-like: l2 > corner_ratio * l1 ...
+  double corner_strength = 6;  // ... and l2 > corner_strength [grey^2/px^2]
+  double noise = 4;            // of the structure tensor [grey^2/px^2]
+  double sigma_edge = 0.5;     // across an edge [px]
+  double sigma_corner = 0.17;  // of a corner-like point, across its stronger direction [px]
+  double border = 12;          // points keep this distance from the image's border [px]
 };
 
 struct ChosenPoint {
@@ -36,14 +30,10 @@ struct ChosenPoint {
   Eigen::Vector2f normal;  // unit: the structure tensor's stronger direction, signed from dark to bright
   StructureTensor tensor;
   bool corner = false;
-  int chain = -1;          // of the edge point it was made from
-  float sigma_normal = 0;  // [px]
-  float sigma_tangent = 0; // [px]
+  int chain = -1;           // of the edge point it was made from
+  float sigma_normal = 0;   // [px]
+  float sigma_tangent = 0;  // [px]
 };
-
-// Structure tensor at a sub-pixel position, over a window of `window` x `window` pixels (odd) with central differences.
-// A window that leaves the image is cut off at the border.
-StructureTensor structureTensor(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window);
 
 // At most options.count - occupied.size() new points, none nearer than `spacing` to an occupied pixel or to each other.
 std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,
