@@ -1,0 +1,20 @@
+// report.html: a run to look at, in one file that needs no network.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "dataset/run_description.h"
+#include "dataset/run_summary.h"
+#include "dataset/trajectory.h"
+#include "pipeline/run_result.h"
+
+namespace edgeslam {
+
+// The whole page. With a ground truth that the trajectory could be aligned to, all is shown in its frame, in its unit;
+// otherwise in the world frame (the first keyframe's camera), in map units. Long runs and large maps are thinned, and
+// the page says so.
+std::string formatReport(const RunResult& result, const RunSummary& summary, const RunDescription& description,
+                         const std::optional<Trajectory>& ground_truth);
+
+}  // namespace edgeslam

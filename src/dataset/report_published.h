@@ -1,0 +1,20 @@
+// The figures that Maity, Saha and Bhowmick (2017) publish for their sequences, to be shown beside ours (tables 2 and
+// 3).
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace edgeslam {
+
+// RMSE of the absolute keyframe trajectory error after similarity alignment [cm]. "X" is a failure, "-" not published.
+struct PublishedErrors {
+  std::string sequence;
+  std::string edge_slam, orb_slam, lsd_slam, edge_vo, pl_slam;
+};
+
+// By the sequence's short name ("fr2_desk", "office0"), its full one ("rgbd_dataset_freiburg2_desk",
+// "office_traj0_frei_png") or a path or archive of that name. Nothing for a sequence that is not the paper's.
+std::optional<PublishedErrors> publishedErrors(const std::string& sequence);
+
+}  // namespace edgeslam

@@ -1,0 +1,181 @@
+#include "dataset/run_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "edgeslam/input_error.h"
+
+namespace edgeslam {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array<TrackingState, 6> all_states{TrackingState::initialising, TrackingState::tracking,
+                                                  TrackingState::predicted,    TrackingState::recovered,
+                                                  TrackingState::relocalised,  TrackingState::lost};
+
+double seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
+
+// Nearest-rank quantile of sorted values.
+double quantile(const std::vector<double>& sorted, double share) {
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
+}
+
+StageTimes stageTimes(const std::string& name, std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  double sum = 0;
+  for (const double time : times) sum += time;
+  const auto count = static_cast<std::int64_t>(times.size());
+  return {name, count, sum / static_cast<double>(count), quantile(times, 0.5), quantile(times, 0.99), times.back()};
+}
+
+std::vector<StageTimes> allStageTimes(const RunResult& result) {
+  std::map<std::string, std::vector<double>> times;
+  std::vector<double> totals;
+  for (const FrameRecord& frame : result.frames) {
+    for (const auto& [name, time] : frame.stage_ms) times[name].push_back(time);
+    if (!frame.stage_ms.empty()) totals.push_back(totalMilliseconds(frame));
+  }
+  std::vector<StageTimes> stages;
+  for (const auto& [name, values] : times) stages.push_back(stageTimes(name, values));
+  if (!totals.empty()) stages.push_back(stageTimes("total", totals));
+  return stages;
+}
+
+// Too few poses to compare is a result, not bad input, when a run is summed up.
+std::optional<AbsoluteError> errorIfComparable(const Trajectory& estimate, const Trajectory& reference) {
+  try {
+    AbsoluteError error = absoluteError(estimate, reference, Alignment::similarity);
+    if (!std::isfinite(error.translation.rmse)) return std::nullopt;
+    return error;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+ordered_json errorJson(const std::optional<AbsoluteError>& error) {
+  if (!error) return nullptr;
+  return {{"pairs", error->pairs},
+          {"rmse_m", error->translation.rmse},
+          {"mean_m", error->translation.mean},
+          {"median_m", error->translation.median},
+          {"max_m", error->translation.max},
+          {"scale", error->reference_T_estimate.scale}};
+}
+
+ordered_json optionalJson(const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(); }
+
+}  // namespace
+
+Trajectory finalTrajectory(const RunResult& result) {
+  Trajectory trajectory;
+  for (const FrameRecord& frame : result.frames) {
+    if (frame.has_final_pose) trajectory.push_back({frame.time_ns, frame.final_world_T_camera});
+  }
+  return trajectory;
+}
+
+Trajectory liveTrajectory(const RunResult& result) {
+  Trajectory trajectory;
+  for (const FrameRecord& frame : result.frames) {
+    if (frame.has_live_pose && isGoodPose(frame.state))
+      trajectory.push_back({frame.time_ns, frame.live_world_T_camera});
+  }
+  return trajectory;
+}
+
+Trajectory keyframeTrajectory(const RunResult& result) {
+  Trajectory trajectory;
+  for (const KeyframeRecord& keyframe : result.keyframes)
+    trajectory.push_back({keyframe.time_ns, keyframe.world_T_camera});
+  return trajectory;
+}
+
+double totalMilliseconds(const FrameRecord& frame) {
+  double total = 0;
+  for (const auto& [name, time] : frame.stage_ms) total += time;
+  return total;
+}
+
+RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& ground_truth) {
+  RunSummary summary;
+  summary.frames = static_cast<std::int64_t>(result.frames.size());
+  summary.unreadable_frames = result.unreadable_frames;
+  for (const TrackingState state : all_states) summary.states[state] = 0;
+  std::int64_t frames_from_first_pose = 0;
+  for (const FrameRecord& frame : result.frames) {
+    const double since_start = seconds(frame.time_ns - result.frames.front().time_ns);
+    ++summary.states[frame.state];
+    if (frame.has_final_pose) {
+      ++summary.final_poses;
+      if (!summary.first_pose_s) summary.first_pose_s = since_start;
+    }
+    if (summary.first_pose_s) ++frames_from_first_pose;
+    if (frame.has_live_pose && isGoodPose(frame.state)) {
+      ++summary.live_poses;
+      if (!summary.first_live_pose_s) summary.first_live_pose_s = since_start;
+    }
+  }
+  if (frames_from_first_pose > 0) {
+    summary.coverage = static_cast<double>(summary.final_poses) / static_cast<double>(frames_from_first_pose);
+  }
+  if (!result.frames.empty()) {
+    summary.recording_s = seconds(result.frames.back().time_ns - result.frames.front().time_ns);
+  }
+  summary.wall_s = result.wall_s;
+  if (result.wall_s > 0) summary.real_time_ratio = summary.recording_s / result.wall_s;
+  summary.stages = allStageTimes(result);
+  summary.has_ground_truth = ground_truth.has_value();
+  if (ground_truth) {
+    summary.errors.trajectory = errorIfComparable(finalTrajectory(result), *ground_truth);
+    summary.errors.live = errorIfComparable(liveTrajectory(result), *ground_truth);
+    summary.errors.keyframes = errorIfComparable(keyframeTrajectory(result), *ground_truth);
+  }
+  return summary;
+}
+
+ordered_json summaryJson(const RunSummary& summary, const RunResult& result, const RunDescription& description) {
+  ordered_json states = ordered_json::object();
+  for (const auto& [state, count] : summary.states) states[stateName(state)] = count;
+  ordered_json stages = ordered_json::object();
+  for (const StageTimes& stage : summary.stages) {
+    stages[stage.name] = {{"frames", stage.frames},
+                          {"mean", stage.mean},
+                          {"p50", stage.median},
+                          {"p99", stage.percentile_99},
+                          {"max", stage.max}};
+  }
+  ordered_json errors;
+  if (summary.has_ground_truth) {
+    errors = {{"alignment", "similarity"},
+              {"trajectory", errorJson(summary.errors.trajectory)},
+              {"live", errorJson(summary.errors.live)},
+              {"keyframes", errorJson(summary.errors.keyframes)}};
+  }
+  return {{"sequence", description.sequence},
+          {"input", description.input},
+          {"command_line", description.command_line},
+          {"frames",
+           {{"total", summary.frames},
+            {"unreadable", summary.unreadable_frames},
+            {"with_pose", summary.final_poses},
+            {"with_live_pose", summary.live_poses}}},
+          {"states", states},
+          {"coverage_from_first_pose", summary.coverage},
+          {"first_pose_s", optionalJson(summary.first_pose_s)},
+          {"first_live_pose_s", optionalJson(summary.first_live_pose_s)},
+          {"keyframes", result.keyframes.size()},
+          {"map_points", result.map_points.size()},
+          {"initialisation", result.initialisation},
+          {"absolute_trajectory_error", errors},
+          {"stage_times_ms", stages},
+          {"recording_s", summary.recording_s},
+          {"wall_s", summary.wall_s},
+          {"real_time_ratio", summary.real_time_ratio},
+          {"versions", {{"edgeslam", description.program_version}, {"libraries", description.library_versions}}},
+          {"configuration", description.configuration}};
+}
+
+}  // namespace edgeslam
