@@ -6,7 +6,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
 #include "edgeslam/input_error.h"
 
@@ -14,6 +13,9 @@ namespace edgeslam {
 namespace {
 
 constexpr const char* kBlanks = " \t\r\n\v\f";
+
+// [ns], 126 years: the difference of two time stamps still fits into 64 bits.
+constexpr std::int64_t kLargestTime = 4'000'000'000'000'000'000;
 
 std::string_view trim(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlanks);
@@ -68,11 +70,10 @@ std::optional<std::int64_t> roundToInteger(const Decimal& decimal) {
     round_up = digits[digits.size() - dropped] >= '5';
     digits.resize(digits.size() - dropped);
   }
-  constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max() - 1;
   std::int64_t value = 0;
   for (const char c : digits) {
     const std::int64_t digit = c - '0';
-    if (value > (kLargest - digit) / 10) return std::nullopt;
+    if (value > (kLargestTime - digit) / 10) return std::nullopt;
     value = value * 10 + digit;
   }
   if (round_up) ++value;
@@ -133,6 +134,7 @@ std::optional<std::int64_t> parseNanoseconds(std::string_view text) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (value > kLargestTime || value < -kLargestTime) return std::nullopt;
   return value;
 }
 

@@ -30,7 +30,7 @@ std::optional<double> parseNumber(std::string_view text);
 // or out of range.
 std::optional<std::int64_t> parseStamp(std::string_view text);
 
-// Whole nanoseconds; nothing where it is not an integer that fits.
+// Whole nanoseconds; nothing where it is no integer or beyond 4e18.
 std::optional<std::int64_t> parseNanoseconds(std::string_view text);
 
 // Seconds with 9 decimals.

@@ -1,0 +1,128 @@
+#include "app/evaluate_command.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "dataset/atomic_file.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
+
+std::map<std::string, Alignment> alignmentNames() {
+  return {{"similarity", Alignment::similarity}, {"rigid", Alignment::rigid}, {"none", Alignment::none}};
+}
+
+std::string alignmentName(Alignment alignment) {
+  for (const auto& [name, value] : alignmentNames()) {
+    if (value == alignment) return name;
+  }
+  return "";
+}
+
+std::string fixed(double value, int decimals) {
+  const int length = std::snprintf(nullptr, 0, "%.*f", decimals, value);
+  std::string text(static_cast<std::size_t>(length) + 1, '\0');
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  text.pop_back();
+  return text;
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
+}
+
+std::string row(const std::string& name, const std::string& unit, int pairs, const ErrorStatistics& values,
+                double factor, int decimals) {
+  std::string line = name + std::string(name.size() < 30 ? 30 - name.size() : 1, ' ') + padded(unit, 4) +
+                     padded(std::to_string(pairs), 8);
+  for (const double value :
+       {values.rmse, values.mean, values.median, values.standard_deviation, values.min, values.max}) {
+    line += padded(pairs > 0 ? fixed(factor * value, decimals) : "-", 11);
+  }
+  return line + "\n";
+}
+
+nlohmann::ordered_json toJson(const ErrorStatistics& values, double factor = 1) {
+  return {{"rmse", factor * values.rmse},     {"mean", factor * values.mean},
+          {"median", factor * values.median}, {"std", factor * values.standard_deviation},
+          {"min", factor * values.min},       {"max", factor * values.max}};
+}
+
+}  // namespace
+
+int runEvaluate(const EvaluateArguments& arguments) {
+  const Trajectory estimate = readTrajectory(arguments.estimate_path);
+  const Trajectory reference = readTrajectory(arguments.reference_path);
+  const AbsoluteError absolute = absoluteError(estimate, reference, arguments.alignment, arguments.tolerance_s);
+  const RelativeError relative =
+      relativeError(estimate, reference, arguments.alignment, arguments.delta_s, arguments.tolerance_s);
+  const Coverage covered = coverage(estimate, reference, arguments.tolerance_s);
+
+  if (!arguments.json_path.empty()) {
+    nlohmann::ordered_json json;
+    json["estimate"] = arguments.estimate_path;
+    json["reference"] = arguments.reference_path;
+    json["alignment"] = alignmentName(arguments.alignment);
+    json["tolerance_s"] = arguments.tolerance_s;
+    json["scale"] = absolute.reference_T_estimate.scale;
+    json["absolute_error"] = {{"pairs", absolute.pairs}, {"translation_m", toJson(absolute.translation)}};
+    json["relative_error"] = {{"delta_s", arguments.delta_s},
+                              {"pairs", relative.pairs},
+                              {"translation_m", toJson(relative.translation)},
+                              {"rotation_deg", toJson(relative.rotation, kDegreesPerRadian)}};
+    json["coverage"] = {{"estimated_poses", estimate.size()},
+                        {"reference_poses", reference.size()},
+                        {"time_share", covered.time_share},
+                        {"pose_share", covered.pose_share},
+                        {"pose_share_after_start", covered.pose_share_after_start},
+                        {"start_s", covered.start_s}};
+    writeFileAtomically(arguments.json_path,
+                        json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  }
+
+  const std::string interval = fixed(arguments.delta_s, 3) + " s";
+  std::string heading(42, ' ');
+  heading.replace(0, 5, "error").replace(30, 4, "unit").replace(37, 5, "pairs");
+  for (const char* name : {"rmse", "mean", "median", "std", "min", "max"}) heading += padded(name, 11);
+  std::cout << "alignment " << alignmentName(arguments.alignment) << ", scale "
+            << fixed(absolute.reference_T_estimate.scale, 6) << ", time stamps within "
+            << fixed(1000 * arguments.tolerance_s, 1) << " ms\n"
+            << heading << "\n"
+            << row("absolute, position", "m", absolute.pairs, absolute.translation, 1, 5)
+            << row("relative, position / " + interval, "m", relative.pairs, relative.translation, 1, 5)
+            << row("relative, rotation / " + interval, "deg", relative.pairs, relative.rotation, kDegreesPerRadian, 4)
+            << "coverage " << fixed(100 * covered.time_share, 1) << " % of the reference's time, "
+            << fixed(100 * covered.pose_share, 1) << " % of its " << reference.size() << " poses ("
+            << fixed(100 * covered.pose_share_after_start, 1) << " % from the first estimated pose on, which comes at "
+            << fixed(covered.start_s, 3) << " s)\n";
+  return 0;
+}
+
+void addEvaluateCommand(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("evaluate", "Error of a trajectory against a reference");
+  const auto arguments = std::make_shared<EvaluateArguments>();
+  command->add_option("ESTIMATE", arguments->estimate_path, "Trajectory, TUM format (time tx ty tz qx qy qz qw)")
+      ->required();
+  command->add_option("GROUNDTRUTH", arguments->reference_path, "Reference, TUM format or EuRoC's data.csv")
+      ->required();
+  const auto alignment = std::make_shared<std::string>(alignmentName(arguments->alignment));
+  command->add_option("--alignment", *alignment, "How the estimate is aligned first: similarity, rigid or none")
+      ->check(CLI::IsMember({"similarity", "rigid", "none"}).description(""))
+      ->capture_default_str();
+  command->add_option("--tolerance", arguments->tolerance_s, "Largest difference of associated time stamps [s]")
+      ->capture_default_str();
+  command->add_option("--delta", arguments->delta_s, "Interval of the relative error [s]")->capture_default_str();
+  command->add_option("--json", arguments->json_path, "Write the figures to this file, too")->type_name("FILE");
+  command->callback([arguments, alignment, &exit_code] {
+    arguments->alignment = alignmentNames().at(*alignment);
+    exit_code = runEvaluate(*arguments);
+  });
+}
+
+}  // namespace edgeslam
