@@ -288,7 +288,7 @@ ceres::Solver::Options solverOptions(CeresProblem& built, const BundleOptions& o
   ceres::Solver::Options solver;
   solver.max_num_iterations = options.iterations;
   solver.num_threads = 1;
-  solver.function_tolerance = 1e-5;
+  solver.function_tolerance = 1e-6;  // outliers inflate the cost that this is relative to
   solver.logging_type = ceres::SILENT;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   int cameras = 0, points = 0;

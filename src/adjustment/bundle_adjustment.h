@@ -1,6 +1,6 @@
-// P19, eq. 1: bundle adjustment of keyframe poses and inverse depths. A point is one unknown: its inverse distance rho along
-// the fixed unit bearing in its host camera, X_host = bearing / rho. Residuals are whitened across and along the edge, with
-// analytic Jacobians; Ceres minimises them with the points eliminated first (1x1 blocks).
+// P19, eq. 1: bundle adjustment of keyframe poses and inverse depths. A point is one unknown: its inverse distance rho
+// along the fixed unit bearing in its host camera, X_host = bearing / rho. Residuals are whitened across and along the
+// edge, with analytic Jacobians; Ceres minimises them with the points eliminated first (1x1 blocks).
 #pragma once
 
 #include <vector>
@@ -35,25 +35,34 @@ struct BundleProblem {
   std::vector<BundleCamera> cameras;
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;
-  // Where over -1: the distance of this camera's centre from camera 0's is kept (the gauge of scale when only camera 0 is fixed).
+  // Where over 0: the distance of this camera's centre from camera 0's is kept (the gauge of scale when only camera 0
+  // is fixed), by scaling all centres about camera 0 and all depths. Ignored where another camera or a point is fixed,
+  // as that holds the scale.
   int scale_camera = -1;
 };
 
 struct BundleOptions {
   int iterations = 8;
-  double huber = 2.0;     // whitened, of the norm of an observation's two residuals
+  double huber = 2.0;  // whitened, of the norm of an observation's two residuals
 };
 
 struct BundleResult {
-  bool usable = false;                 // Ceres found a usable solution and all values are finite; else the problem is as it was
-  std::vector<double> errors;          // whitened residual norm of each observation afterwards; infinity behind the camera
-  std::vector<double> depth_sigmas;    // standard deviation of each point's inverse depth with the poses held (0 where none)
+  // Something was adjusted, Ceres found a usable solution and all of it is finite. Else the problem is as it was: also
+  // where an index is out of range or a camera's pose not finite.
+  bool usable = false;
+  // Whitened residual norm of each observation afterwards; infinity behind the camera, and for what takes no part:
+  // measurements and points with values that are not finite, sigmas or inverse depths not over 0.
+  std::vector<double> errors;
+  // Standard deviation of each point's inverse depth with the poses held, outliers down-weighed (0 where unobserved).
+  std::vector<double> depth_sigmas;
   double initial_cost = 0;
   double final_cost = 0;
   int iterations = 0;
 };
 
 // Optimises the problem in place. The same input gives the same output to the last bit (one thread, no clock).
+// Observations that are behind their camera count as constants until the others bring them before it. Inverse depths
+// stay over 0.
 BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const BundleOptions& options);
 
 }  // namespace edgeslam

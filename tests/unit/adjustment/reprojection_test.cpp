@@ -1,0 +1,152 @@
+#include "adjustment/reprojection.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "synthetic_scene.h"
+
+namespace edgeslam::test {
+namespace {
+
+WhitenedPixel randomWhitenedPixel(Random& random, const Camera& camera) {
+  const Measurement m = measure(random, randomPixel(random, camera), uniform(random, -M_PI, M_PI),
+                                uniform(random, 0.2, 2), uniform(random, 0.5, 20), 0);
+  return {m.pixel, whitening(m)};
+}
+
+// A camera near the origin that looks along z, as all points of these tests want to be seen.
+Pose forwardPose(Random& random) { return randomPose(random, 0.5, 0.2); }
+
+// Column k of the derivative of a residual by a right-hand update, by central differences.
+template <typename Residual>
+Matrix26d numericByPose(const Pose& pose, const Residual& residual) {
+  constexpr double kStep = 1e-6;
+  Matrix26d derivative;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d update = kStep * Vector6d::Unit(k);
+    derivative.col(k) = (residual(retract(pose, update)) - residual(retract(pose, -update))) / (2 * kStep);
+  }
+  return derivative;
+}
+
+class ReprojectionOfModel : public testing::TestWithParam<CameraModel> {};
+
+TEST_P(ReprojectionOfModel, DerivativeByPointMatchesDifferences) {
+  Random random(1);
+  const Camera camera = testCamera(GetParam());
+  for (int run = 0; run < 200; ++run) {
+    const WhitenedPixel measured = randomWhitenedPixel(random, camera);
+    const Eigen::Vector3d point = bearing(camera, randomPixel(random, camera)) * uniform(random, 0.5, 5);
+    Eigen::Vector2d residual;
+    Matrix23d analytic, numeric;
+    ASSERT_TRUE(pointResidual(camera, measured, point, residual, &analytic));
+    for (int k = 0; k < 3; ++k) {
+      constexpr double kStep = 1e-6;
+      Eigen::Vector2d above, below;
+      ASSERT_TRUE(pointResidual(camera, measured, point + kStep * Eigen::Vector3d::Unit(k), above, nullptr));
+      ASSERT_TRUE(pointResidual(camera, measured, point - kStep * Eigen::Vector3d::Unit(k), below, nullptr));
+      numeric.col(k) = (above - below) / (2 * kStep);
+    }
+    EXPECT_LT((analytic - numeric).norm(), 1e-6 * (1 + analytic.norm())) << "run " << run;
+  }
+}
+
+TEST_P(ReprojectionOfModel, PoseDerivativeMatchesDifferences) {
+  Random random(2);
+  const Camera camera = testCamera(GetParam());
+  for (int run = 0; run < 200; ++run) {
+    const WhitenedPixel measured = randomWhitenedPixel(random, camera);
+    const Pose pose = randomPose(random, 3, 3);
+    const Eigen::Vector3d point = pose * (bearing(camera, randomPixel(random, camera)) * uniform(random, 0.5, 5));
+    Eigen::Vector2d residual;
+    Matrix26d analytic;
+    ASSERT_TRUE(poseResidual(camera, measured, cameraFrame(pose), point, residual, &analytic));
+    const Matrix26d numeric = numericByPose(pose, [&](const Pose& moved) {
+      Eigen::Vector2d r;
+      EXPECT_TRUE(poseResidual(camera, measured, cameraFrame(moved), point, r, nullptr));
+      return r;
+    });
+    EXPECT_LT((analytic - numeric).norm(), 1e-6 * (1 + analytic.norm())) << "run " << run;
+  }
+}
+
+TEST_P(ReprojectionOfModel, BundleDerivativesMatchDifferences) {
+  Random random(3);
+  const Camera camera = testCamera(GetParam());
+  for (int run = 0; run < 200; ++run) {
+    const WhitenedPixel measured = randomWhitenedPixel(random, camera);
+    const Pose host = forwardPose(random), target = forwardPose(random);
+    const Eigen::Vector3d host_bearing = bearing(camera, {uniform(random, 200, 440), uniform(random, 150, 330)});
+    const double inverse_depth = run % 10 == 0 ? 0 : uniform(random, 0.01, 0.5);
+    const auto residualAt = [&](const Pose& h, const Pose& t, double rho) {
+      Eigen::Vector2d r;
+      EXPECT_TRUE(bundleResidual(camera, measured, cameraFrame(h), cameraFrame(t), host_bearing, rho, r, nullptr));
+      return r;
+    };
+    Eigen::Vector2d residual;
+    BundleDerivatives analytic;
+    ASSERT_TRUE(bundleResidual(camera, measured, cameraFrame(host), cameraFrame(target), host_bearing, inverse_depth,
+                               residual, &analytic));
+    EXPECT_EQ(residual, residualAt(host, target, inverse_depth));
+    const Matrix26d by_host =
+        numericByPose(host, [&](const Pose& moved) { return residualAt(moved, target, inverse_depth); });
+    const Matrix26d by_target =
+        numericByPose(target, [&](const Pose& moved) { return residualAt(host, moved, inverse_depth); });
+    constexpr double kStep = 1e-6;
+    const Eigen::Vector2d by_inverse_depth =
+        (residualAt(host, target, inverse_depth + kStep) - residualAt(host, target, inverse_depth - kStep)) /
+        (2 * kStep);
+    EXPECT_LT((analytic.by_host - by_host).norm(), 1e-6 * (1 + by_host.norm())) << "run " << run;
+    EXPECT_LT((analytic.by_target - by_target).norm(), 1e-6 * (1 + by_target.norm())) << "run " << run;
+    EXPECT_LT((analytic.by_inverse_depth - by_inverse_depth).norm(), 1e-6 * (1 + by_inverse_depth.norm()))
+        << "run " << run;
+  }
+}
+
+TEST_P(ReprojectionOfModel, BundleAndPoseResidualsAgree) {
+  Random random(4);
+  const Camera camera = testCamera(GetParam());
+  for (int run = 0; run < 200; ++run) {
+    const WhitenedPixel measured = randomWhitenedPixel(random, camera);
+    const Pose host = forwardPose(random), target = forwardPose(random);
+    const Eigen::Vector3d host_bearing = bearing(camera, {uniform(random, 200, 440), uniform(random, 150, 330)});
+    const double inverse_depth = uniform(random, 0.1, 0.5);
+    Eigen::Vector2d by_bundle, by_pose;
+    ASSERT_TRUE(bundleResidual(camera, measured, cameraFrame(host), cameraFrame(target), host_bearing, inverse_depth,
+                               by_bundle, nullptr));
+    ASSERT_TRUE(
+        poseResidual(camera, measured, cameraFrame(target), host * (host_bearing / inverse_depth), by_pose, nullptr));
+    EXPECT_LT((by_bundle - by_pose).norm(), 1e-7 * (1 + by_pose.norm()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, ReprojectionOfModel,
+                         testing::Values(CameraModel::pinhole_radial_tangential, CameraModel::kannala_brandt));
+
+TEST(Reprojection, OnlyTheFisheyeSeesSideways) {
+  const Camera pinhole = testCamera(CameraModel::pinhole_radial_tangential);
+  const Camera fisheye = testCamera(CameraModel::kannala_brandt);
+  EXPECT_TRUE(inFront(pinhole, {0, 0, 1e-9}));
+  EXPECT_FALSE(inFront(pinhole, {1, 0, 0}));
+  EXPECT_TRUE(inFront(fisheye, {1, 0, 0}));
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const Camera& camera : {pinhole, fisheye}) {
+    EXPECT_FALSE(inFront(camera, {0, 0, -1}));
+    EXPECT_FALSE(inFront(camera, {0, 0, 0}));
+    EXPECT_FALSE(inFront(camera, {0, kNan, 1}));
+    EXPECT_FALSE(inFront(camera, {0, 0, kNan}));
+  }
+}
+
+TEST(Reprojection, HuberWeightIsTheLossDerivative) {
+  for (const double norm : {0.1, 0.9, 1.1, 3.0, 100.0}) {
+    constexpr double kStep = 1e-5;
+    const double derivative =
+        (huberLoss((norm + kStep) * (norm + kStep), 1) - huberLoss((norm - kStep) * (norm - kStep), 1)) / (2 * kStep);
+    EXPECT_NEAR(derivative, 2 * norm * huberWeight(norm, 1), 1e-6) << norm;
+  }
+}
+
+}  // namespace
+}  // namespace edgeslam::test
