@@ -1,5 +1,8 @@
-// P4: a blurred or defocused image is told by the variance of the grey values at its edge points, against a threshold that
-// adapts to what the scene gave before.
+// P4: a blurred, defocused or covered image is told by what its edges look like, against a threshold that adapts to
+// what the scene gave before. The paper takes the variance of the grey values at the edge points. That says more about
+// which things are in view than about blur: over eight sequences, wherever it caught shaken frames it also rejected
+// sharp ones at which the camera turned to a barer wall. What blur does take from an image is edges and their
+// steepness, both at once.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -9,21 +12,22 @@
 namespace edgeslam {
 
 struct BlurGateOptions {
-  double share_of_average = 0.4;  // a frame whose sharpness falls below this share of the running average is blurred
-  double forgetting = 0.95;       // weight of the past in the running average, a frame
-  int longest_rejection = 15;     // after so many rejected frames in a row the average starts anew [frames]
+  double share_of_average = 0.45;  // a frame whose sharpness falls below this share of the running average is blurred
+  double forgetting = 0.85;        // weight of the past in the running average, a frame
+  int longest_rejection = 15;      // after so many rejected frames in a row the average starts anew [frames]
 };
 
 struct BlurGate {
-  double average = 0;  // running average of the sharpness; 0 before the first frame
+  double average = 0;  // running average of the sharpness of the accepted frames; 0 before the first one
   int rejected_in_a_row = 0;
 };
 
-// What P4 judges an image by: variance of the grey values at the edge points, weighted so that an image with few or weak
-// edges counts as little. 0 for an image without edges.
+// What an image is judged by: the gradients of its edge points, summed, over the number of the image's pixels
+// [grey/px]. 0 for an image without edges.
 double sharpness(const cv::Mat& grey, const EdgeMap& edges);
 
-// True where the image is to be discarded; updates the gate.
+// True where the image is to be discarded; updates the gate. An image without edges always is; the first one with
+// edges, and the first after the longest rejection, never is.
 bool isBlurred(BlurGate& gate, double frame_sharpness, const BlurGateOptions& options);
 
 }  // namespace edgeslam
