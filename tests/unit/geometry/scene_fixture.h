@@ -1,0 +1,63 @@
+// Seeded random cameras' views of random points, for the geometry tests.
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/pose.h"
+
+namespace edgeslam {
+
+constexpr double kDegree = M_PI / 180;
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  double normal(double sigma) { return std::normal_distribution<double>(0, sigma)(engine_); }
+  Eigen::Vector3d vector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
+  Eigen::Vector3d direction() { return Eigen::Vector3d(normal(1), normal(1), normal(1)).normalized(); }
+  Eigen::Quaterniond rotation(double angle) { return rotationExp(angle * direction()); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+inline Camera pinholeCamera() {
+  return {CameraModel::pinhole_radial_tangential, 640, 480, 520.9, 521, 325.1, 249.7,
+          {0.08, -0.16, -0.0015, -0.0004, 0}};
+}
+
+inline Camera fisheyeCamera() {
+  return {CameraModel::kannala_brandt, 512, 512, 190.98, 190.97, 254.93, 256.90, {0.0034, 0.0007, -0.0020, 0.0002, 0}};
+}
+
+struct NamedCamera {
+  std::string name;
+  Camera camera;
+};
+
+// The calibrations of the recorded sequences, and a fisheye.
+inline std::vector<NamedCamera> cameras() {
+  const CameraModel pinhole = CameraModel::pinhole_radial_tangential;
+  return {{"desk", pinholeCamera()},
+          {"panels", {pinhole, 640, 480, 535.4, 539.2, 320.1, 247.6, {0.045, -0.11, -0.0012, 0.0007, 0}}},
+          {"corridor", {pinhole, 640, 480, 421, 421.6, 322.4, 236.8, {-0.245, 0.055, 0.0004, -0.0006, 0}}},
+          {"kitchen", {pinhole, 640, 480, 522.124, 522.124, 319.179, 247.402, {-0.028296, 0, 0, 0, 0}}},
+          {"office", {pinhole, 640, 480, 481.2, 480, 319.5, 239.5, {0, 0, 0, 0, 0}}},
+          {"xyz", {pinhole, 640, 480, 517.3, 516.5, 318.6, 255.3, {0.12, -0.22, -0.0022, 0.0012, 0}}},
+          {"fisheye", fisheyeCamera()}};
+}
+
+inline Eigen::Vector2d randomPixel(const Camera& camera, Random& random) {
+  return {random.uniform(0, camera.width - 1), random.uniform(0, camera.height - 1)};
+}
+
+// Angle [rad] between two directions.
+inline double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+}  // namespace edgeslam
