@@ -16,8 +16,9 @@ struct ResectioningResult {
   int inlier_count = 0;
 };
 
-// `points` in the world frame, `bearings` unit in the camera frame; `threshold` [rad] for an inlier. Same seed, same
-// result.
+// `points` in the world frame, `bearings` unit in the camera frame, same size; `threshold` [rad] for an inlier;
+// `iterations` bounds RANSAC's. Same seed, same result. Not found: fewer than 6 correspondences or inliers, or inliers
+// all on one line.
 ResectioningResult resection(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector3d>& bearings,
                              double threshold, std::uint64_t seed, int iterations = 200);
 

@@ -1,0 +1,202 @@
+// EPnP needs a consensus to work on: P3P samples find it, EPnP and least squares over it make the pose.
+#include "geometry/resectioning.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <random>
+
+namespace edgeslam {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+constexpr std::size_t kLeastPoints = 6;
+constexpr std::size_t kSample = 4;     // three for P3P, one to choose among its solutions
+constexpr double kLeastZ = 0.05;       // of a bearing, for a place on the normalized image plane
+constexpr double kConfidence = 0.999;  // of RANSAC
+constexpr int kRefinements = 15;
+
+// Correspondences in the form OpenCV asks for, with the identity as camera matrix.
+struct Normalized {
+  std::vector<cv::Point3d> points;  // world
+  std::vector<cv::Point2d> pixels;  // camera, z = 1
+};
+
+Normalized normalized(const Points& points, const Points& bearings, const std::vector<std::size_t>& chosen) {
+  Normalized result;
+  for (const std::size_t i : chosen) {
+    result.points.emplace_back(points[i].x(), points[i].y(), points[i].z());
+    result.pixels.emplace_back(bearings[i].x() / bearings[i].z(), bearings[i].y() / bearings[i].z());
+  }
+  return result;
+}
+
+double angularError(const Pose& camera_T_world, const Eigen::Vector3d& point, const Eigen::Vector3d& bearing) {
+  const Eigen::Vector3d seen = camera_T_world * point;
+  return std::atan2(seen.cross(bearing).norm(), seen.dot(bearing));
+}
+
+// Those of `among` within `threshold` [rad] under a pose.
+std::vector<std::size_t> within(const Pose& camera_T_world, const Points& points, const Points& bearings,
+                                const std::vector<std::size_t>& among, double threshold) {
+  std::vector<std::size_t> kept;
+  for (const std::size_t i : among) {
+    if (angularError(camera_T_world, points[i], bearings[i]) < threshold) kept.push_back(i);
+  }
+  return kept;
+}
+
+Pose poseOf(const cv::Mat& rotation_vector, const cv::Mat& translation) {
+  const Eigen::Vector3d rotation(rotation_vector.at<double>(0), rotation_vector.at<double>(1),
+                                 rotation_vector.at<double>(2));
+  return {rotationExp(rotation), {translation.at<double>(0), translation.at<double>(1), translation.at<double>(2)}};
+}
+
+// Points on one line, or in one place, leave the camera free to turn about it.
+bool spanPlane(const Points& points, const std::vector<std::size_t>& chosen) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const std::size_t i : chosen) mean += points[i] / static_cast<double>(chosen.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const std::size_t i : chosen) scatter += (points[i] - mean) * (points[i] - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter, Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d spread = solver.eigenvalues();
+  return spread(1) > 1e-8 * spread(2) && spread(2) > 1e-20 * mean.squaredNorm();
+}
+
+// The first `kSample` of `order` become a random sample of it.
+void drawSample(std::vector<std::size_t>* order, std::mt19937_64* random) {
+  for (std::size_t k = 0; k < kSample; ++k) {
+    std::swap((*order)[k], (*order)[k + (*random)() % (order->size() - k)]);
+  }
+}
+
+// Iterations after which RANSAC has seen a sample of inliers alone with the confidence asked for.
+double iterationsNeeded(std::size_t inliers, std::size_t all) {
+  const double share = std::pow(static_cast<double>(inliers) / static_cast<double>(all), kSample);
+  return share >= 1 ? 1.0 : std::log(1 - kConfidence) / std::log1p(-share);
+}
+
+// RANSAC on minimal samples: P3P, the pose with the most inliers. EPnP itself needs more points, and fails on samples
+// of them that lie in one plane.
+Pose sampleConsensus(const Points& points, const Points& bearings, const std::vector<std::size_t>& usable,
+                     double threshold, std::uint64_t seed, int iterations) {
+  Pose best;
+  std::size_t best_count = 0;
+  std::mt19937_64 random(seed);
+  std::vector<std::size_t> order = usable;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    drawSample(&order, &random);
+    const std::size_t fourth = order[3];
+    const Normalized sample = normalized(points, bearings, {order[0], order[1], order[2]});
+    std::vector<cv::Mat> rotation_vectors, translations;
+    cv::solveP3P(sample.points, sample.pixels, cv::Matx33d::eye(), cv::noArray(), rotation_vectors, translations,
+                 cv::SOLVEPNP_AP3P);
+    for (std::size_t k = 0; k < rotation_vectors.size(); ++k) {
+      const Pose candidate = poseOf(rotation_vectors[k], translations[k]);
+      if (!(angularError(candidate, points[fourth], bearings[fourth]) < threshold)) continue;
+      const std::size_t count = within(candidate, points, bearings, usable, threshold).size();
+      if (count <= best_count) continue;
+      best_count = count;
+      best = candidate;
+    }
+    if (iteration + 1 >= iterationsNeeded(best_count, usable.size())) break;
+  }
+  return best;
+}
+
+// EPnP over the correspondences within the threshold; the given pose where it does not gain any.
+Pose overConsensus(const Pose& pose, const Points& points, const Points& bearings,
+                   const std::vector<std::size_t>& usable, double threshold) {
+  const std::vector<std::size_t> inliers = within(pose, points, bearings, usable, threshold);
+  if (inliers.size() < kLeastPoints) return pose;
+  const Normalized consensus = normalized(points, bearings, inliers);
+  cv::Mat rotation_vector, translation;
+  cv::solvePnP(consensus.points, consensus.pixels, cv::Matx33d::eye(), cv::noArray(), rotation_vector, translation,
+               false, cv::SOLVEPNP_EPNP);
+  const Pose candidate = poseOf(rotation_vector, translation);
+  return within(candidate, points, bearings, usable, threshold).size() >= inliers.size() ? candidate : pose;
+}
+
+// Normal equations of the errors [rad] of the bearings, across each, with Tukey's weights of width `width` [rad].
+struct BearingSystem {
+  Matrix6d hessian = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  double cost = 0;
+};
+
+BearingSystem bearingSystem(const Pose& pose, const Points& points, const Points& bearings,
+                            const std::vector<std::size_t>& among, double width) {
+  BearingSystem system;
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  for (const std::size_t i : among) {
+    const Eigen::Vector3d seen = pose * points[i];
+    const double distance = seen.norm();
+    const Eigen::Vector3d direction = seen / distance;
+    const Eigen::Vector3d error = direction - bearings[i];  // its length is the angle, to first order
+    const double closeness = 1 - error.squaredNorm() / (width * width);
+    system.cost += closeness > 0 ? 1 - closeness * closeness * closeness : 1.0;
+    if (!(closeness > 0)) continue;
+    Eigen::Matrix<double, 3, 6> seen_by_update;
+    seen_by_update << rotation, -rotation * skew(points[i]);
+    const Eigen::Matrix<double, 3, 6> derivative =
+        (Eigen::Matrix3d::Identity() - direction * direction.transpose()) / distance * seen_by_update;
+    const double weight = closeness * closeness;
+    system.hessian += weight * derivative.transpose() * derivative;
+    system.gradient += weight * derivative.transpose() * error;
+  }
+  return system;
+}
+
+// Levenberg-Marquardt on the bearings themselves, which unlike the normalized plane weighs all directions alike.
+Pose refine(Pose pose, const Points& points, const Points& bearings, const std::vector<std::size_t>& among,
+            double width) {
+  double damping = 1e-6;
+  BearingSystem system = bearingSystem(pose, points, bearings, among, width);
+  for (int iteration = 0; iteration < kRefinements; ++iteration) {
+    Matrix6d damped = system.hessian;
+    damped.diagonal() += damping * (system.hessian.diagonal().array() + 1e-12).matrix();
+    const Vector6d step = -damped.ldlt().solve(system.gradient);
+    if (!step.allFinite() || step.norm() < 1e-12) break;
+    const Pose next = retract(pose, step);
+    const BearingSystem next_system = bearingSystem(next, points, bearings, among, width);
+    if (next_system.cost < system.cost) {
+      pose = next;
+      system = next_system;
+      damping = std::max(1e-9, 0.1 * damping);
+    } else {
+      damping *= 100;
+    }
+  }
+  return pose;
+}
+
+}  // namespace
+
+ResectioningResult resection(const Points& points, const Points& bearings, double threshold, std::uint64_t seed,
+                             int iterations) {
+  assert(points.size() == bearings.size());
+  ResectioningResult result;
+  result.inliers.assign(points.size(), 0);
+  std::vector<std::size_t> finite, usable;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite() || !bearings[i].allFinite()) continue;
+    finite.push_back(i);
+    if (bearings[i].z() >= kLeastZ) usable.push_back(i);
+  }
+  if (usable.size() < kLeastPoints || !spanPlane(points, usable)) return result;
+
+  const Pose consensus = sampleConsensus(points, bearings, usable, threshold, seed, iterations);
+  result.camera_T_world =
+      refine(overConsensus(consensus, points, bearings, usable, threshold), points, bearings, finite, 2 * threshold);
+  const std::vector<std::size_t> inliers = within(result.camera_T_world, points, bearings, finite, threshold);
+  for (const std::size_t i : inliers) result.inliers[i] = 1;
+  result.inlier_count = static_cast<int>(inliers.size());
+  result.found = inliers.size() >= kLeastPoints && spanPlane(points, inliers);
+  return result;
+}
+
+}  // namespace edgeslam
