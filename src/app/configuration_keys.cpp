@@ -13,11 +13,11 @@ ConfigurationKey heading(const std::string& section, const std::string& document
 }  // namespace
 
 std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
-  EdgeOptions& edges = settings.edges;
-  BlurGateOptions& blur_gate = settings.blur_gate;
-  PointChoiceOptions& points = settings.points;
-  PoseOptions& pose = settings.pose;
-  BundleOptions& bundle = settings.bundle;
+  EdgeOptions& edges = settings.tracking.edges;
+  BlurGateOptions& blur_gate = settings.tracking.blur_gate;
+  PointChoiceOptions& points = settings.tracking.points;
+  PoseOptions& pose = settings.tracking.pose;
+  BundleOptions& bundle = settings.mapping.local_adjustment.bundle;
   return {
       heading("edges", "Edges: zero crossings of a difference of Gaussians, joined into chains"),
       {"edges.sigma", &edges.sigma, "px", 0.3, 10, "standard deviation of the narrower Gaussian"},

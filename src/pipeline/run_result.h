@@ -55,8 +55,8 @@ struct KeyframeRecord {
 };
 
 struct MapPointRecord {
-  Eigen::Vector3d position;        // world, map units
-  Eigen::Vector3d edge_direction;  // world, unit; zero for a corner-like point
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world, map units
+  Eigen::Vector3d edge_direction = Eigen::Vector3d::Zero();  // world, unit; zero for a corner-like point
   int chain = -1;                  // points of one image edge share a number; unique over the map
   int order = 0;                   // place along the chain
   float depth_sigma_ratio = 0;     // standard deviation of the depth over the depth

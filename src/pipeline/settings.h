@@ -2,20 +2,16 @@
 // (firmware_cfg/edgeslam.yaml) names every field.
 #pragma once
 
-#include "adjustment/bundle_adjustment.h"
-#include "adjustment/pose_adjustment.h"
-#include "edges/blur_gate.h"
-#include "edges/edge_detection.h"
-#include "edges/point_choice.h"
+#include "mapping/mapper.h"
+#include "tracking/tracker.h"
 
 namespace edgeslam {
 
 struct Settings {
-  EdgeOptions edges;
-  BlurGateOptions blur_gate;
-  PointChoiceOptions points;
-  PoseOptions pose;
-  BundleOptions bundle;
+  TrackerOptions tracking;
+  MapperOptions mapping;
+  // Lockstep: the map view that follows from the keyframe of frame k is taken at frame k + view_delay_frames (design, section 4).
+  int view_delay_frames = 2;
 };
 
 }  // namespace edgeslam

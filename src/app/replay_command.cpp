@@ -1,0 +1,187 @@
+#include "app/replay_command.h"
+
+#include <unistd.h>
+
+#include <ceres/version.h>
+
+#include <Eigen/Core>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <opencv2/core/version.hpp>
+
+#include "app/command_line.h"
+#include "app/configuration.h"
+#include "dataset/evaluation.h"
+#include "dataset/frame_source.h"
+#include "dataset/run_files.h"
+#include "pipeline/lockstep_run.h"
+
+namespace edgeslam {
+namespace {
+
+struct ReplayArguments {
+  std::string input;
+  std::string configuration;
+  std::string output = "result";
+  int drawings = 12;
+};
+
+// "frame 120 of 780, tracking, 3.1 x real time": rewritten in place on a terminal, a line every ten seconds elsewhere.
+class Progress {
+ public:
+  explicit Progress(std::int64_t total) : total_(total), terminal_(isatty(STDERR_FILENO) == 1), start_(now()), last_(start_) {}
+
+  void show(const FrameRecord& frame, std::int64_t count, double sequence_s) {
+    const double elapsed = now() - last_;
+    if (elapsed < (terminal_ ? 0.1 : 10.0)) return;
+    last_ = now();
+    std::string line = "frame " + std::to_string(count) + (total_ > 0 ? " of " + std::to_string(total_) : "") + ", " +
+                       stateName(frame.state) + (frame.reason.empty() ? "" : " (" + frame.reason + ")");
+    char speed[48];
+    std::snprintf(speed, sizeof(speed), ", %.1f x real time", sequence_s / (last_ - start_));
+    line += speed;
+    if (terminal_) {
+      std::cerr << "\r\033[K" << line << std::flush;
+    } else {
+      std::cerr << line << "\n";
+    }
+  }
+
+  void end() const {
+    if (terminal_) std::cerr << "\r\033[K" << std::flush;
+  }
+
+ private:
+  static double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
+  std::int64_t total_;
+  bool terminal_;
+  double start_, last_;
+};
+
+Camera cameraOf(const FrameSource& source, const Configuration& configuration, const std::string& input) {
+  if (configuration.camera) return *configuration.camera;
+  if (source.camera()) return *source.camera();
+  throw InputError(input + ": no calibration: put a camera.yaml beside the frames, or give one in the configuration (camera.calibration)");
+}
+
+RunDescription describe(const ReplayArguments& arguments, const Configuration& configuration) {
+  RunDescription description;
+  description.input = arguments.input;
+  description.sequence = std::filesystem::path(arguments.input).lexically_normal().filename().string();
+  if (description.sequence.empty()) {
+    description.sequence = std::filesystem::path(arguments.input).lexically_normal().parent_path().filename().string();
+  }
+  description.program_version = EDGESLAM_VERSION;
+  description.library_versions["OpenCV"] = CV_VERSION;
+  description.library_versions["Ceres"] = CERES_VERSION_STRING;
+  description.library_versions["Eigen"] = std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
+                                          "." + std::to_string(EIGEN_MINOR_VERSION);
+  description.configuration = formatConfiguration(configuration);
+  description.command_line = "edgeslam replay " + arguments.input +
+                             (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) + " --output " +
+                             arguments.output;
+  return description;
+}
+
+RunResult runAll(FrameSource& source, const Camera& camera, const Settings& settings, int drawings) {
+  const auto start = std::chrono::steady_clock::now();
+  LockstepRun run(camera, settings, source.size(), drawings);
+  Progress progress(source.size());
+  std::int64_t count = 0, first_ns = 0;
+  while (std::optional<Frame> frame = source.next()) {
+    if (count++ == 0) first_ns = frame->time_ns;
+    std::string problem = frame->problem;
+    if (problem.empty() && (frame->grey.cols != camera.width || frame->grey.rows != camera.height)) {
+      problem = "image of " + std::to_string(frame->grey.cols) + " x " + std::to_string(frame->grey.rows) +
+                " pixels, the calibration is for " + std::to_string(camera.width) + " x " + std::to_string(camera.height);
+    }
+    if (!problem.empty()) {
+      progress.end();
+      std::cerr << "edgeslam: frame " << frame->index << " skipped: " << problem << "\n";
+    }
+    const FrameRecord& record = problem.empty() ? run.process(frame->index, frame->time_ns, frame->grey)
+                                                : run.skip(frame->index, frame->time_ns, problem);
+    progress.show(record, count, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
+  }
+  progress.end();
+  RunResult result = run.finish();
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+// What a person wants to know first.
+void tell(const RunResult& result, const std::optional<Trajectory>& ground_truth, const std::string& output) {
+  const auto& frames = result.frames;
+  std::size_t posed = 0, first = frames.size();
+  Trajectory estimate;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!frames[i].has_final_pose) continue;
+    first = std::min(first, i);
+    ++posed;
+    estimate.push_back({frames[i].time_ns, frames[i].final_world_T_camera});
+  }
+  const double seconds = frames.empty() ? 0 : static_cast<double>(frames.back().time_ns - frames.front().time_ns) * 1e-9;
+  std::printf("%zu frames (%.1f s) in %.1f s: %.2f x real time\n", frames.size(), seconds, result.wall_s,
+              seconds / std::max(1e-9, result.wall_s));
+  if (result.unreadable_frames > 0) std::printf("%lld frames could not be read and were skipped\n", static_cast<long long>(result.unreadable_frames));
+  if (posed == 0) {
+    std::printf("no pose: %s\n", frames.empty() ? "no frame" : frames.back().reason.c_str());
+    return;
+  }
+  std::printf("map started by %s\n", result.initialisation.c_str());
+  std::printf("poses for %zu frames, %.1f %% from the first pose on; %zu keyframes, %zu map points\n", posed,
+              100.0 * static_cast<double>(posed) / static_cast<double>(frames.size() - first), result.keyframes.size(),
+              result.map_points.size());
+  if (ground_truth) {
+    try {
+      const AbsoluteError error = absoluteError(estimate, *ground_truth, Alignment::similarity);
+      std::printf("absolute trajectory error %.2f cm (RMSE of %d poses after similarity alignment)\n",
+                  100 * error.translation.rmse, error.pairs);
+    } catch (const InputError& problem) {
+      std::printf("no error figure: %s\n", problem.what());
+    }
+  }
+  std::printf("%s/report.html shows it all\n", output.c_str());
+}
+
+int runReplay(const ReplayArguments& arguments) {
+  const Configuration configuration =
+      arguments.configuration.empty() ? Configuration() : readConfiguration(arguments.configuration);
+  const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
+  const Camera camera = cameraOf(*source, configuration, arguments.input);
+  std::optional<Trajectory> ground_truth;
+  if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
+
+  const RunResult result = runAll(*source, camera, configuration.settings, arguments.drawings);
+  if (result.unreadable_frames == static_cast<std::int64_t>(result.frames.size())) {
+    throw InputError(arguments.input + ": not one frame could be read");
+  }
+  writeRunFiles(arguments.output, result, describe(arguments, configuration), ground_truth);
+  tell(result, ground_truth, arguments.output);
+  return result.keyframes.empty() ? exit_failed : exit_done;
+}
+
+}  // namespace
+
+void addReplayCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<ReplayArguments>();
+  CLI::App* command = app.add_subcommand("replay", "Run over recorded frames: trajectory, map, error figures and a report");
+  command->add_option("INPUT", arguments->input,
+                      "TUM RGB-D, ICL-NUIM or EuRoC folder, folder with a video and times.txt, folder of images named by "
+                      "time stamp, or video file")
+      ->required();
+  command->add_option("--config", arguments->configuration, "Configuration file (YAML); without it the defaults");
+  command->add_option("--output", arguments->output, "Folder for the results")->capture_default_str();
+  command->add_option("--drawings", arguments->drawings, "Frames drawn with edges and tracks in the report")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 200));
+  command->callback([arguments, &exit_code] { exit_code = runReplay(*arguments); });
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,57 @@
+// What tracking hands to mapping: frames with the measured pixels of their tracks, whole, as values.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "edges/point_choice.h"
+#include "geometry/measurement.h"
+#include "geometry/pose.h"
+#include "image/pyramid.h"
+
+namespace edgeslam {
+
+using KeyframeId = int;         // counted from 0, also the index in Map::keyframes
+using PointId = std::int64_t;   // of a track, and of the map point that it becomes
+
+// The images of a frame; shared, never changed once made.
+struct FrameImages {
+  std::int64_t frame_index = 0;
+  std::int64_t time_ns = 0;
+  ImagePyramid pyramid;
+};
+
+// One track as seen in one frame.
+struct PointObservation {
+  PointId point = 0;
+  Measurement measurement;
+  Eigen::Vector3d bearing = Eigen::Vector3d::UnitZ();  // unit, camera frame, of the measurement's pixel
+  bool corner = false;
+  int chain = -1;            // of the edge on which it was chosen, in the frame where it was chosen
+  int order = 0;             // place along that chain
+};
+
+// A frame on its way to mapping: every frame while there is no map, keyframes afterwards.
+struct TrackedFrame {
+  std::int64_t frame_index = 0;
+  std::int64_t time_ns = 0;
+  Pose world_T_camera;          // as tracking estimated it
+  std::vector<PointObservation> observations;
+  std::shared_ptr<const FrameImages> images;
+  KeyframeId keyframe = -1;     // its number, or -1 for a frame that only helps the initialisation
+  std::string reason;           // which criterion made it a keyframe
+};
+
+struct Keyframe {
+  KeyframeId id = 0;
+  std::int64_t frame_index = 0;
+  std::int64_t time_ns = 0;
+  Pose world_T_camera;
+  std::vector<PointObservation> observations;  // sorted by point
+  std::shared_ptr<const FrameImages> images;   // null for a keyframe that no point is hosted in
+  std::string reason;
+};
+
+}  // namespace edgeslam

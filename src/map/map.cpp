@@ -1,0 +1,25 @@
+#include "map/map.h"
+
+#include <algorithm>
+
+namespace edgeslam {
+
+const PointObservation* findObservation(const Keyframe& keyframe, PointId point) {
+  const auto found = std::lower_bound(keyframe.observations.begin(), keyframe.observations.end(), point,
+                                      [](const PointObservation& o, PointId id) { return o.point < id; });
+  return found != keyframe.observations.end() && found->point == point ? &*found : nullptr;
+}
+
+std::vector<int> sharedPoints(const Map& map, KeyframeId keyframe) {
+  std::vector<int> shared(map.keyframes.size(), 0);
+  for (const PointObservation& observation : map.keyframes[static_cast<std::size_t>(keyframe)].observations) {
+    const auto point = map.points.find(observation.point);
+    if (point == map.points.end()) continue;
+    ++shared[static_cast<std::size_t>(point->second.host)];
+    for (const KeyframeId other : point->second.seen_in) ++shared[static_cast<std::size_t>(other)];
+  }
+  shared[static_cast<std::size_t>(keyframe)] = 0;
+  return shared;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,40 @@
+// The map: keyframes and points of image edges. A point is its host keyframe, the bearing there and one unknown, the inverse
+// distance along it (design, section 5). Mapping owns it; tracking sees a MapView.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "map/keyframe.h"
+
+namespace edgeslam {
+
+struct MapPoint {
+  PointId id = 0;
+  KeyframeId host = 0;
+  Eigen::Vector3d host_bearing;       // unit, host camera frame
+  double inverse_depth = 0;           // 1 / distance along the bearing [1 / map unit]
+  double inverse_depth_sigma = 0;     // standard deviation
+  bool corner = false;
+  int chain = -1;                     // of the host keyframe's edges
+  int order = 0;
+  std::vector<KeyframeId> seen_in;    // keyframes other than the host, ascending
+};
+
+struct Map {
+  std::vector<Keyframe> keyframes;     // index is the id
+  std::map<PointId, MapPoint> points;  // ordered, so that every sum over them is the same in every run
+};
+
+// Position in the world frame.
+inline Eigen::Vector3d worldPosition(const Map& map, const MapPoint& point) {
+  return map.keyframes[static_cast<std::size_t>(point.host)].world_T_camera * (point.host_bearing / point.inverse_depth);
+}
+
+// The observation of a point in a keyframe, or null.
+const PointObservation* findObservation(const Keyframe& keyframe, PointId point);
+
+// P18: number of map points that each keyframe shares with `keyframe`, by keyframe number (0 for itself).
+std::vector<int> sharedPoints(const Map& map, KeyframeId keyframe);
+
+}  // namespace edgeslam

@@ -1,0 +1,40 @@
+// What tracking sees of the map: immutable values with a version number.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "map/keyframe.h"
+
+namespace edgeslam {
+
+struct ViewPoint {
+  PointId id = 0;
+  KeyframeId host = 0;
+  Eigen::Vector3d host_bearing;
+  double inverse_depth = 0;
+  double inverse_depth_sigma = 0;
+};
+
+struct MapView {
+  std::uint64_t version = 0;
+  std::int64_t origin_frame = -1;     // frame of keyframe 0: a view of an attempt that was given up is told by it
+  bool initialised = false;           // false: a provisional, flat-depth map from the first frame; poses are not given out
+  std::string waiting_for;            // why not, in words that a user understands
+  std::vector<Pose> keyframe_poses;   // world_T_camera, index is the keyframe
+  std::vector<ViewPoint> points;      // sorted by id
+};
+
+inline const ViewPoint* findPoint(const MapView& view, PointId id) {
+  const auto found = std::lower_bound(view.points.begin(), view.points.end(), id,
+                                      [](const ViewPoint& p, PointId wanted) { return p.id < wanted; });
+  return found != view.points.end() && found->id == id ? &*found : nullptr;
+}
+
+inline Eigen::Vector3d worldPosition(const MapView& view, const ViewPoint& point) {
+  return view.keyframe_poses[static_cast<std::size_t>(point.host)] * (point.host_bearing / point.inverse_depth);
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,314 @@
+#include "mapping/initialisation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "adjustment/pose_adjustment.h"
+#include "geometry/epipolar.h"
+#include "geometry/triangulation.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr double degrees = 180.0 / M_PI;
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Calls visit(index in first, index in other) for each point seen in both; both are sorted by point.
+template <typename Visit>
+void forEachCommon(const TrackedFrame& first, const TrackedFrame& other, Visit visit) {
+  std::size_t i = 0;
+  for (std::size_t j = 0; j < other.observations.size(); ++j) {
+    while (i < first.observations.size() && first.observations[i].point < other.observations[j].point) ++i;
+    if (i < first.observations.size() && first.observations[i].point == other.observations[j].point) visit(i, j);
+  }
+}
+
+}  // namespace
+
+void Initialisation::start(const TrackedFrame& first) {
+  first_ = first;
+  frames_.clear();
+  inverse_depths_.assign(first.observations.size(), 1.0);
+  depth_sigmas_.assign(first.observations.size(), options_.prior_sigma);
+  accepted_ = InitialStructure();
+  waiting_for_ = "motion of the camera";
+  changed_ = false;
+}
+
+bool Initialisation::add(const TrackedFrame& frame) {
+  changed_ = false;
+  frames_.push_back(frame);
+  if (frames_.size() > 400) {  // a camera that hardly moves: every second frame is enough
+    std::vector<TrackedFrame> thinned;
+    for (std::size_t i = 1; i < frames_.size(); i += 2) thinned.push_back(std::move(frames_[i]));
+    frames_ = std::move(thinned);
+  }
+  if (frames_.size() % static_cast<std::size_t>(options_.attempt_interval) != 0) return false;
+  if (displacementLessRotation() < options_.least_displacement_px) {
+    waiting_for_ = "too little parallax: the points hardly moved, or by rotation only";
+    return false;
+  }
+  return attempt();
+}
+
+bool Initialisation::attempt() {
+  InitialStructure best = flatStart();
+  if (best.usable) {
+    inverse_depths_ = best.inverse_depths;
+    depth_sigmas_ = best.depth_sigmas;
+    for (std::size_t i = 0; i < best.frames.size(); ++i) frames_[best.frames[i]].world_T_camera = best.first_T_camera[i];
+    changed_ = true;
+  }
+  const auto corners = std::count_if(frames_.back().observations.begin(), frames_.back().observations.end(),
+                                     [](const PointObservation& o) { return o.corner; });
+  if (corners >= options_.five_point_corners) {
+    InitialStructure other = fivePointStart();
+    if (other.usable && (!best.usable || other.quality.kept > best.quality.kept)) best = std::move(other);
+  }
+  waiting_for_ = reasonToWait(best);
+  if (!waiting_for_.empty()) return false;
+  accepted_ = std::move(best);
+  description_ = accepted_.method + " from frame " + std::to_string(first_.frame_index) + " to frame " +
+                 std::to_string(frames_.back().frame_index) + ", quality " + std::to_string(accepted_.quality.kept) + " of " +
+                 std::to_string(accepted_.quality.pieces) + " pieces, parallax " + std::to_string(accepted_.parallax_deg) +
+                 " deg, " + std::to_string(accepted_.points) + " points";
+  return true;
+}
+
+std::string Initialisation::reasonToWait(const InitialStructure& structure) const {
+  if (!structure.usable) return "the adjustment of the first frames failed";
+  if (structure.parallax_deg < options_.least_parallax_deg) {
+    return "too little parallax (" + std::to_string(structure.parallax_deg).substr(0, 4) + " deg)";
+  }
+  const double enough = std::min<double>(options_.fewest_points, options_.point_share * structure.followed);
+  if (structure.points < enough) return "too few points with a good depth (" + std::to_string(structure.points) + ")";
+  if (structure.quality.share() < options_.least_quality) {
+    return "quality too low (" + std::to_string(structure.quality.kept) + " of " + std::to_string(structure.quality.pieces) +
+           " edge pieces hold)";
+  }
+  return "";
+}
+
+// What tracking followed against the flat map, freed and adjusted.
+InitialStructure Initialisation::flatStart() const {
+  InitialStructure structure;
+  structure.method = "flat start";
+  structure.frames = chooseFrames();
+  for (const std::size_t frame : structure.frames) structure.first_T_camera.push_back(frames_[frame].world_T_camera);
+  structure.inverse_depths = inverse_depths_;
+  return adjust(std::move(structure));
+}
+
+// P14: the pose of the current frame by the five-point algorithm, depths by triangulation, the frames between by their points.
+InitialStructure Initialisation::fivePointStart() const {
+  InitialStructure structure;
+  structure.method = "five-point";
+  const TrackedFrame& current = frames_.back();
+  std::vector<Eigen::Vector3d> first_bearings, current_bearings;
+  forEachCommon(first_, current, [&](std::size_t i, std::size_t j) {
+    if (!first_.observations[i].corner) return;
+    first_bearings.push_back(first_.observations[i].bearing);
+    current_bearings.push_back(current.observations[j].bearing);
+  });
+  const RelativePose relative =
+      relativePose(first_bearings, current_bearings, 1.0 / meanFocalLength(camera_), /*seed=*/1);
+  if (!relative.found) return structure;
+
+  structure.inverse_depths.assign(first_.observations.size(), 0.0);
+  std::vector<double> depths;
+  forEachCommon(first_, current, [&](std::size_t i, std::size_t j) {
+    const TriangulationResult point = triangulate(camera_, first_.observations[i].bearing,
+                                                  {{relative.second_T_first, current.observations[j].measurement}});
+    if (!point.converged || point.sigma > 0.5 * point.inverse_depth) return;
+    structure.inverse_depths[i] = point.inverse_depth;
+    depths.push_back(point.inverse_depth);
+  });
+  if (depths.size() < 20) return structure;
+  const double scale = median(depths);  // brings the median inverse depth to 1
+  for (double& inverse_depth : structure.inverse_depths) inverse_depth = inverse_depth > 0 ? inverse_depth / scale : 1.0;
+
+  Pose last_first_T_camera;
+  const Pose current_first_T_camera = [&] {
+    Pose pose = relative.second_T_first.inverse();
+    pose.translation *= scale;
+    return pose;
+  }();
+  structure.frames = chooseFrames();
+  for (const std::size_t frame : structure.frames) {
+    std::vector<PoseObservation> observations;
+    forEachCommon(first_, frames_[frame], [&](std::size_t i, std::size_t j) {
+      PoseObservation observation;
+      observation.point = first_.observations[i].bearing / structure.inverse_depths[i];
+      observation.measurement = frames_[frame].observations[j].measurement;
+      observations.push_back(observation);
+    });
+    const bool is_current = frame + 1 == frames_.size();
+    const PoseResult pose =
+        adjustPose(camera_, is_current ? current_first_T_camera : last_first_T_camera, observations, PoseOptions());
+    if (!pose.converged) return structure;
+    structure.first_T_camera.push_back(pose.world_T_camera);
+    last_first_T_camera = pose.world_T_camera;
+  }
+  return adjust(std::move(structure));
+}
+
+std::vector<std::size_t> Initialisation::chooseFrames() const {
+  std::vector<std::size_t> chosen;
+  const auto count = static_cast<std::size_t>(options_.frames_between) + 1;
+  for (std::size_t k = 1; k <= count; ++k) {
+    const std::size_t frame = frames_.size() * k / count;
+    if (frame >= 1 && (chosen.empty() || chosen.back() != frame - 1)) chosen.push_back(frame - 1);
+  }
+  return chosen;
+}
+
+InitialStructure Initialisation::adjust(InitialStructure structure) const {
+  BundleProblem problem;
+  problem.cameras.push_back({Pose(), true});
+  for (const Pose& pose : structure.first_T_camera) problem.cameras.push_back({pose, false});
+  for (std::size_t i = 0; i < first_.observations.size(); ++i) {
+    BundlePoint point;
+    point.host_bearing = first_.observations[i].bearing;
+    point.inverse_depth = structure.inverse_depths[i] > 0 ? structure.inverse_depths[i] : 1.0;
+    point.prior_sigma = options_.prior_sigma;
+    problem.points.push_back(point);
+  }
+  for (std::size_t k = 0; k < structure.frames.size(); ++k) {
+    const TrackedFrame& frame = frames_[structure.frames[k]];
+    forEachCommon(first_, frame, [&](std::size_t i, std::size_t j) {
+      problem.observations.push_back({static_cast<int>(k) + 1, static_cast<int>(i), frame.observations[j].measurement});
+    });
+  }
+  BundleResult result = adjustBundle(camera_, problem, options_.bundle);
+  if (!result.usable) return structure;
+
+  // A second round without the outliers: sliding points would bend the start.
+  BundleProblem inliers = problem;
+  inliers.observations.clear();
+  for (std::size_t k = 0; k < problem.observations.size(); ++k) {
+    if (result.errors[k] < options_.outlier) inliers.observations.push_back(problem.observations[k]);
+  }
+  result = adjustBundle(camera_, inliers, options_.bundle);
+  if (!result.usable) return structure;
+
+  for (std::size_t k = 0; k < structure.frames.size(); ++k) structure.first_T_camera[k] = inliers.cameras[k + 1].world_T_camera;
+  structure.depth_sigmas = result.depth_sigmas;
+  std::vector<int> seen(first_.observations.size(), 0);
+  for (std::size_t k = 0; k < inliers.observations.size(); ++k) {
+    if (result.errors[k] < options_.outlier) ++seen[static_cast<std::size_t>(inliers.observations[k].point)];
+  }
+  for (std::size_t i = 0; i < inliers.points.size(); ++i) {
+    structure.inverse_depths[i] = inliers.points[i].inverse_depth;
+    if (seen[i] == 0) structure.depth_sigmas[i] = options_.prior_sigma;
+  }
+  structure.usable = true;
+  judge(structure);
+  return structure;
+}
+
+void Initialisation::judge(InitialStructure& structure) const {
+  const TrackedFrame& current = frames_.back();
+  std::vector<QualityPoint> quality_points;
+  std::vector<double> angles;
+  forEachCommon(first_, current, [&](std::size_t i, std::size_t) {
+    ++structure.followed;
+    const PointObservation& first = first_.observations[i];
+    const double inverse_depth = structure.inverse_depths[i], sigma = structure.depth_sigmas[i];
+    if (inverse_depth <= 0 || sigma > options_.largest_depth_sigma * inverse_depth) return;
+    ++structure.points;
+    const Eigen::Vector3d ray = first.bearing / inverse_depth - structure.first_T_camera.back().translation;
+    angles.push_back(std::acos(std::clamp(ray.normalized().dot(first.bearing), -1.0, 1.0)) * degrees);
+    quality_points.push_back(
+        {first.measurement.pixel, first.measurement.normal, first.bearing, inverse_depth, sigma, first.chain, first.order});
+  });
+  structure.parallax_deg = median(std::move(angles));
+  structure.quality = qualityFactor(std::move(quality_points), options_.quality);
+}
+
+double Initialisation::displacementLessRotation() const {
+  std::vector<Eigen::Vector3d> first, current;
+  forEachCommon(first_, frames_.back(), [&](std::size_t i, std::size_t j) {
+    first.push_back(first_.observations[i].bearing);
+    current.push_back(frames_.back().observations[j].bearing);
+  });
+  if (first.size() < 8) return 0;
+  return relativeRotation(first, current).median_error * meanFocalLength(camera_);
+}
+
+void Initialisation::writeProvisional(MapView& view) const {
+  view.origin_frame = first_.frame_index;
+  view.keyframe_poses.assign(1, Pose());
+  view.points.clear();
+  for (std::size_t i = 0; i < first_.observations.size(); ++i) {
+    if (inverse_depths_[i] <= 0) continue;
+    view.points.push_back({first_.observations[i].point, 0, first_.observations[i].bearing, inverse_depths_[i], depth_sigmas_[i]});
+  }
+}
+
+Map Initialisation::map() const {
+  Map map;
+  const auto addKeyframe = [&](const TrackedFrame& frame, const Pose& pose, const char* reason) {
+    Keyframe keyframe;
+    keyframe.id = static_cast<KeyframeId>(map.keyframes.size());
+    keyframe.frame_index = frame.frame_index;
+    keyframe.time_ns = frame.time_ns;
+    keyframe.world_T_camera = pose;
+    keyframe.observations = frame.observations;
+    keyframe.images = frame.images;
+    keyframe.reason = reason;
+    map.keyframes.push_back(std::move(keyframe));
+  };
+  addKeyframe(first_, Pose(), "first");
+  for (std::size_t k = 0; k < accepted_.frames.size(); ++k) {
+    addKeyframe(frames_[accepted_.frames[k]], accepted_.first_T_camera[k], "initialisation");
+  }
+  for (std::size_t i = 0; i < first_.observations.size(); ++i) {
+    const PointObservation& first = first_.observations[i];
+    const double inverse_depth = accepted_.inverse_depths[i], sigma = accepted_.depth_sigmas[i];
+    if (inverse_depth <= 0 || sigma > options_.largest_depth_sigma * inverse_depth) continue;
+    MapPoint point;
+    point.id = first.point;
+    point.host_bearing = first.bearing;
+    point.inverse_depth = inverse_depth;
+    point.inverse_depth_sigma = sigma;
+    point.corner = first.corner;
+    point.chain = first.chain;
+    point.order = first.order;
+    for (std::size_t k = 1; k < map.keyframes.size(); ++k) {
+      if (findObservation(map.keyframes[k], point.id)) point.seen_in.push_back(static_cast<KeyframeId>(k));
+    }
+    if (!point.seen_in.empty()) map.points.emplace(point.id, point);
+  }
+  return map;
+}
+
+std::vector<std::pair<std::int64_t, Pose>> Initialisation::earlyPoses() const {
+  std::vector<std::pair<std::int64_t, Pose>> poses{{first_.frame_index, Pose()}};
+  // Backwards from the last frame, whose pose is known: each starts from its successor.
+  Pose pose = accepted_.first_T_camera.empty() ? Pose() : accepted_.first_T_camera.back();
+  for (std::size_t frame = frames_.size(); frame-- > 0;) {
+    std::vector<PoseObservation> observations;
+    forEachCommon(first_, frames_[frame], [&](std::size_t i, std::size_t j) {
+      if (accepted_.inverse_depths[i] <= 0) return;
+      PoseObservation observation;
+      observation.point = first_.observations[i].bearing / accepted_.inverse_depths[i];
+      observation.measurement = frames_[frame].observations[j].measurement;
+      observations.push_back(observation);
+    });
+    const PoseResult result = adjustPose(camera_, pose, observations, PoseOptions());
+    if (!result.converged) break;
+    pose = result.world_T_camera;
+    poses.emplace_back(frames_[frame].frame_index, pose);
+  }
+  std::sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return poses;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,134 @@
+#include "mapping/local_adjustment.h"
+
+#include <algorithm>
+
+namespace edgeslam {
+namespace {
+
+// The new keyframe and those covisible with it, best first.
+std::vector<KeyframeId> covisibleKeyframes(const Map& map, const LocalAdjustmentOptions& options) {
+  const KeyframeId latest = map.keyframes.back().id;
+  const std::vector<int> shared = sharedPoints(map, latest);
+  const int most = *std::max_element(shared.begin(), shared.end());
+  const double enough = std::min<double>(options.covisible_points, options.covisible_share * most);
+  std::vector<KeyframeId> covisible;
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (shared[static_cast<std::size_t>(keyframe.id)] > 0 && shared[static_cast<std::size_t>(keyframe.id)] >= enough) {
+      covisible.push_back(keyframe.id);
+    }
+  }
+  std::stable_sort(covisible.begin(), covisible.end(), [&](KeyframeId a, KeyframeId b) {
+    return shared[static_cast<std::size_t>(a)] > shared[static_cast<std::size_t>(b)];
+  });
+  covisible.insert(covisible.begin(), latest);
+  if (static_cast<int>(covisible.size()) > options.free_keyframes) covisible.resize(static_cast<std::size_t>(options.free_keyframes));
+  return covisible;
+}
+
+bool sees(const std::vector<int>& camera_of, KeyframeId keyframe) { return camera_of[static_cast<std::size_t>(keyframe)] >= 0; }
+
+// Points that the free keyframes see.
+std::vector<PointId> pointsSeenBy(const Map& map, const std::vector<int>& camera_of) {
+  std::vector<PointId> points;
+  for (const auto& [id, point] : map.points) {
+    if (sees(camera_of, point.host) || std::any_of(point.seen_in.begin(), point.seen_in.end(),
+                                                   [&](KeyframeId k) { return sees(camera_of, k); })) {
+      points.push_back(id);
+    }
+  }
+  return points;
+}
+
+void removeOutliers(const std::vector<std::pair<PointId, KeyframeId>>& outliers, const std::vector<PointId>& points,
+                    double largest_depth_sigma, Map& map) {
+  for (const auto& [id, keyframe] : outliers) {
+    auto& seen_in = map.points.at(id).seen_in;
+    seen_in.erase(std::remove(seen_in.begin(), seen_in.end(), keyframe), seen_in.end());
+  }
+  for (const PointId id : points) {
+    const MapPoint& point = map.points.at(id);
+    const bool depth_lost = point.inverse_depth <= 0 || point.inverse_depth_sigma > largest_depth_sigma * point.inverse_depth;
+    if (point.seen_in.empty() || depth_lost) map.points.erase(id);
+  }
+}
+
+}  // namespace
+
+bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map) {
+  const std::vector<KeyframeId> free = covisibleKeyframes(map, options);
+  // Keyframes that share most points with the free ones hold the gauge.
+  std::vector<int> shared(map.keyframes.size(), 0);
+  for (const KeyframeId keyframe : free) {
+    const std::vector<int> counts = sharedPoints(map, keyframe);
+    for (std::size_t k = 0; k < counts.size(); ++k) shared[k] += counts[k];
+  }
+  for (const KeyframeId keyframe : free) shared[static_cast<std::size_t>(keyframe)] = 0;
+  std::vector<KeyframeId> fixed;
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (shared[static_cast<std::size_t>(keyframe.id)] > 0) fixed.push_back(keyframe.id);
+  }
+  std::stable_sort(fixed.begin(), fixed.end(), [&](KeyframeId a, KeyframeId b) {
+    return shared[static_cast<std::size_t>(a)] > shared[static_cast<std::size_t>(b)];
+  });
+  if (static_cast<int>(fixed.size()) > options.fixed_keyframes) fixed.resize(static_cast<std::size_t>(options.fixed_keyframes));
+  return adjustKeyframes(camera, options, free, fixed, map);
+}
+
+bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options, const std::vector<KeyframeId>& free,
+                     const std::vector<KeyframeId>& fixed, Map& map) {
+  BundleProblem problem;
+  std::vector<int> camera_of(map.keyframes.size(), -1);  // index in the problem, by keyframe
+  std::vector<KeyframeId> keyframe_of;
+  const auto addCamera = [&](KeyframeId keyframe, bool is_fixed) {
+    camera_of[static_cast<std::size_t>(keyframe)] = static_cast<int>(problem.cameras.size());
+    problem.cameras.push_back({map.keyframes[static_cast<std::size_t>(keyframe)].world_T_camera, is_fixed});
+    keyframe_of.push_back(keyframe);
+  };
+  std::vector<KeyframeId> ordered_free = free;
+  std::sort(ordered_free.begin(), ordered_free.end());
+  // With nothing else to hold it, the oldest keyframe holds the pose and the newest one's distance from it the scale.
+  const bool hold_oldest = fixed.empty();
+  for (const KeyframeId keyframe : ordered_free) addCamera(keyframe, hold_oldest && keyframe == ordered_free.front());
+  const std::vector<PointId> points = pointsSeenBy(map, camera_of);
+  for (const KeyframeId keyframe : fixed) addCamera(keyframe, true);
+  if (hold_oldest) problem.scale_camera = static_cast<int>(ordered_free.size()) - 1;
+
+  std::vector<PointId> used_points;
+  std::vector<std::pair<PointId, KeyframeId>> observed;
+  for (const PointId id : points) {
+    const MapPoint& point = map.points.at(id);
+    if (camera_of[static_cast<std::size_t>(point.host)] < 0) addCamera(point.host, true);
+    const int index = static_cast<int>(problem.points.size());
+    BundlePoint bundle_point;
+    bundle_point.host = camera_of[static_cast<std::size_t>(point.host)];
+    bundle_point.host_bearing = point.host_bearing;
+    bundle_point.inverse_depth = point.inverse_depth;
+    problem.points.push_back(bundle_point);
+    used_points.push_back(id);
+    for (const KeyframeId keyframe : point.seen_in) {
+      if (camera_of[static_cast<std::size_t>(keyframe)] < 0) continue;
+      const PointObservation* observation = findObservation(map.keyframes[static_cast<std::size_t>(keyframe)], id);
+      problem.observations.push_back({camera_of[static_cast<std::size_t>(keyframe)], index, observation->measurement});
+      observed.emplace_back(id, keyframe);
+    }
+  }
+  const BundleResult result = adjustBundle(camera, problem, options.bundle);
+  if (!result.usable) return false;
+
+  for (std::size_t k = 0; k < problem.cameras.size(); ++k) {
+    if (!problem.cameras[k].fixed) map.keyframes[static_cast<std::size_t>(keyframe_of[k])].world_T_camera = problem.cameras[k].world_T_camera;
+  }
+  for (std::size_t i = 0; i < used_points.size(); ++i) {
+    MapPoint& point = map.points.at(used_points[i]);
+    point.inverse_depth = problem.points[i].inverse_depth;
+    if (result.depth_sigmas[i] > 0) point.inverse_depth_sigma = result.depth_sigmas[i];
+  }
+  std::vector<std::pair<PointId, KeyframeId>> outliers;
+  for (std::size_t k = 0; k < observed.size(); ++k) {
+    if (!(result.errors[k] < options.outlier)) outliers.push_back(observed[k]);
+  }
+  removeOutliers(outliers, used_points, options.largest_depth_sigma, map);
+  return true;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,49 @@
+// The lockstep schedule (design, section 4): tracking and mapping exchange values at fixed frames, so that a run is a pure
+// function of its input.
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "mapping/mapper.h"
+#include "pipeline/run_result.h"
+#include "pipeline/settings.h"
+#include "tracking/tracker.h"
+
+namespace edgeslam {
+
+class LockstepRun {
+ public:
+  // `drawings`: about so many frames are drawn for the report, out of `expected_frames` (0: unknown, one every 100).
+  LockstepRun(const Camera& camera, const Settings& settings, std::int64_t expected_frames, int drawings);
+
+  // The next frame, CV_8U of the camera's size. Returns its record, without the final pose.
+  const FrameRecord& process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey);
+  // A frame that could not be read.
+  const FrameRecord& skip(std::int64_t index, std::int64_t time_ns, const std::string& problem);
+  // Final poses, carried by their keyframes, and the map. Call once, at the end.
+  RunResult finish();
+
+ private:
+  struct DueView {
+    std::int64_t due = 0;  // count of frames processed at which it is taken
+    MapView view;
+  };
+
+  void takeDueViews();
+  void hand(std::vector<TrackedFrame> frames, FrameRecord& record);
+  FrameRecord& record(std::int64_t index, std::int64_t time_ns, const TrackingOutcome& outcome);
+  void draw(const cv::Mat& grey, const FrameRecord& record);
+
+  Settings settings_;
+  Tracker tracker_;
+  Mapper mapper_;
+  RunResult result_;
+  std::deque<DueView> views_;
+  std::int64_t processed_ = 0;
+  std::int64_t drawing_interval_ = 100;
+  std::vector<KeyframeId> references_;   // by frame record: the keyframe that carries its pose, or -1
+  std::vector<Pose> reference_T_camera_;
+};
+
+}  // namespace edgeslam

@@ -1,0 +1,68 @@
+#include "pipeline/map_records.h"
+
+#include <algorithm>
+
+namespace edgeslam {
+namespace {
+
+struct ChainKey {
+  KeyframeId host;
+  int chain;
+  bool operator<(const ChainKey& other) const { return host != other.host ? host < other.host : chain < other.chain; }
+};
+
+// Direction of the edge in space from its neighbours along the chain: the chord between them.
+void writeDirections(std::vector<MapPointRecord>& records) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const bool has_previous = i > 0 && records[i - 1].chain == records[i].chain;
+    const bool has_next = i + 1 < records.size() && records[i + 1].chain == records[i].chain;
+    const Eigen::Vector3d chord = records[has_next ? i + 1 : i].position - records[has_previous ? i - 1 : i].position;
+    const double length = chord.norm();
+    records[i].edge_direction = length > 0 ? Eigen::Vector3d(chord / length) : Eigen::Vector3d::Zero();
+  }
+}
+
+}  // namespace
+
+std::vector<KeyframeRecord> keyframeRecords(const Map& map) {
+  std::vector<KeyframeRecord> records;
+  for (const Keyframe& keyframe : map.keyframes) {
+    KeyframeRecord record;
+    record.id = keyframe.id;
+    record.frame_index = keyframe.frame_index;
+    record.time_ns = keyframe.time_ns;
+    record.world_T_camera = keyframe.world_T_camera;
+    record.reason = keyframe.reason;
+    for (const PointObservation& observation : keyframe.observations) record.shared_points += map.points.count(observation.point) > 0;
+    records.push_back(record);
+  }
+  return records;
+}
+
+std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera) {
+  std::map<ChainKey, std::vector<const MapPoint*>> chains;
+  for (const auto& [id, point] : map.points) chains[{point.host, point.chain}].push_back(&point);
+  std::vector<MapPointRecord> records;
+  int chain_number = 0;
+  for (auto& [key, points] : chains) {
+    std::stable_sort(points.begin(), points.end(), [](const MapPoint* a, const MapPoint* b) { return a->order < b->order; });
+    for (const MapPoint* point : points) {
+      MapPointRecord record;
+      record.position = worldPosition(map, *point);
+      record.chain = chain_number;
+      record.order = point->order;
+      record.depth_sigma_ratio = static_cast<float>(point->inverse_depth_sigma / point->inverse_depth);
+      const Keyframe& host = map.keyframes[static_cast<std::size_t>(point->host)];
+      const Eigen::Vector2d pixel = project(camera, point->host_bearing);
+      if (host.images && insideImage(camera, pixel, 1)) {
+        record.grey = host.images->pyramid.levels[0].at<unsigned char>(static_cast<int>(pixel.y() + 0.5), static_cast<int>(pixel.x() + 0.5));
+      }
+      records.push_back(record);
+    }
+    ++chain_number;
+  }
+  writeDirections(records);
+  return records;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,14 @@
+// The map as records for files and the report (P28): edge points with their direction in space, in the order of their edges.
+#pragma once
+
+#include "map/map.h"
+#include "pipeline/run_result.h"
+
+namespace edgeslam {
+
+std::vector<KeyframeRecord> keyframeRecords(const Map& map);
+
+// Chain numbers are made unique over the map (a chain belongs to one host keyframe).
+std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera);
+
+}  // namespace edgeslam

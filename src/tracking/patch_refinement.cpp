@@ -1,0 +1,67 @@
+#include "tracking/patch_refinement.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace edgeslam {
+namespace {
+
+enum class Refinement { refined, unchanged, lost };
+
+Refinement refine(const Camera& camera, const MapView& view, const FrameImages& images, const Pose& camera_T_world,
+                  double scene_depth, const RefinementOptions& options, Track& track) {
+  if (!track.keyframe_images || static_cast<std::size_t>(track.keyframe) >= view.keyframe_poses.size()) {
+    return Refinement::unchanged;
+  }
+  const Pose& world_T_keyframe = view.keyframe_poses[static_cast<std::size_t>(track.keyframe)];
+  double depth = scene_depth;
+  if (const ViewPoint* point = findPoint(view, track.id)) {
+    depth = (worldPosition(view, *point) - world_T_keyframe.translation).norm();
+  }
+  const Eigen::Matrix2f warp = keyframeWarp(camera, camera_T_world * world_T_keyframe, track.keyframe_pixel, depth);
+  const float size = warp.determinant();
+  if (!(size > 0.2f && size < 5.0f)) return Refinement::lost;
+
+  PatchTemplate patch;
+  if (!makeTemplate(track.keyframe_images->pyramid.levels[0], track.keyframe_pixel, warp, options.window, patch)) {
+    return Refinement::unchanged;
+  }
+  AlignmentOptions alignment;
+  alignment.iterations = options.iterations;
+  alignment.damping = static_cast<float>(options.damping);
+  const AlignmentResult aligned = alignPatch(patch, images.pyramid.levels[0], track.pixel, track.pixel, alignment);
+  if (!aligned.inside || aligned.correlation < static_cast<float>(options.least_correlation)) return Refinement::lost;
+  if (std::abs(track.normal.dot(aligned.pixel - track.pixel)) > static_cast<float>(options.largest_move)) return Refinement::lost;
+  track.pixel = aligned.pixel;
+  return Refinement::refined;
+}
+
+}  // namespace
+
+Eigen::Matrix2f keyframeWarp(const Camera& camera, const Pose& camera_T_keyframe, const Eigen::Vector2f& keyframe_pixel,
+                             double depth) {
+  constexpr double step = 4;  // [px]
+  const Eigen::Vector2d centre = keyframe_pixel.cast<double>();
+  const auto transfer = [&](const Eigen::Vector2d& pixel) {
+    return project(camera, camera_T_keyframe * Eigen::Vector3d(bearing(camera, pixel) * depth));
+  };
+  Eigen::Matrix2d camera_by_keyframe;
+  camera_by_keyframe.col(0) = (transfer(centre + Eigen::Vector2d(step, 0)) - transfer(centre - Eigen::Vector2d(step, 0))) / (2 * step);
+  camera_by_keyframe.col(1) = (transfer(centre + Eigen::Vector2d(0, step)) - transfer(centre - Eigen::Vector2d(0, step))) / (2 * step);
+  return camera_by_keyframe.inverse().cast<float>();
+}
+
+void refineTracks(const Camera& camera, const MapView& view, const FrameImages& images, const Pose& world_T_camera,
+                  double scene_depth, const RefinementOptions& options, std::vector<Track>& tracks) {
+  if (!options.enabled) return;
+  const Pose camera_T_world = world_T_camera.inverse();
+  std::size_t kept = 0;
+  for (Track& track : tracks) {
+    if (refine(camera, view, images, camera_T_world, scene_depth, options, track) == Refinement::lost) continue;
+    if (&tracks[kept] != &track) tracks[kept] = std::move(track);
+    ++kept;
+  }
+  tracks.resize(kept);
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,108 @@
+#include "tracking/point_following.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace edgeslam {
+namespace {
+
+// Marks taken pixels, to find points nearer than a distance to one that was kept.
+class Occupancy {
+ public:
+  Occupancy(int width, int height, float distance)
+      : distance_(distance), columns_(width), rows_(height), cells_(static_cast<std::size_t>(width * height), -1) {}
+
+  // True, and marked, where no kept point is nearer than the distance.
+  bool take(const Eigen::Vector2f& pixel) {
+    const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
+    const int reach = static_cast<int>(std::ceil(distance_));
+    for (int v = std::max(0, y - reach); v <= std::min(rows_ - 1, y + reach); ++v) {
+      for (int u = std::max(0, x - reach); u <= std::min(columns_ - 1, x + reach); ++u) {
+        const int other = cells_[static_cast<std::size_t>(v * columns_ + u)];
+        if (other >= 0 && (kept_[static_cast<std::size_t>(other)] - pixel).norm() < distance_) return false;
+      }
+    }
+    cells_[static_cast<std::size_t>(y * columns_ + x)] = static_cast<int>(kept_.size());
+    kept_.push_back(pixel);
+    return true;
+  }
+
+ private:
+  float distance_;
+  int columns_, rows_;
+  std::vector<int> cells_;
+  std::vector<Eigen::Vector2f> kept_;
+};
+
+bool insideImage(const cv::Mat& image, const Eigen::Vector2f& pixel, float border) {
+  return pixel.x() >= border && pixel.y() >= border && pixel.x() <= static_cast<float>(image.cols - 1) - border &&
+         pixel.y() <= static_cast<float>(image.rows - 1) - border;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2f> predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
+                                           const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth) {
+  const Pose last_T_world = world_T_last.inverse(), predicted_T_world = world_T_predicted.inverse();
+  std::vector<Eigen::Vector2f> predictions;
+  predictions.reserve(tracks.size());
+  for (const Track& track : tracks) {
+    double depth = scene_depth;
+    if (const ViewPoint* point = findPoint(view, track.id)) {
+      depth = (last_T_world * worldPosition(view, *point)).norm();
+    }
+    const Eigen::Vector3d in_last = bearing(camera, track.pixel.cast<double>()) * depth;
+    const Eigen::Vector3d in_predicted = predicted_T_world * (world_T_last * in_last);
+    predictions.push_back(in_predicted.z() > 0.01 * depth ? Eigen::Vector2f(project(camera, in_predicted).cast<float>())
+                                                          : track.pixel);
+  }
+  return predictions;
+}
+
+double medianDepth(const std::vector<Track>& tracks, const MapView& view, const Pose& world_T_camera, double fallback) {
+  std::vector<double> depths;
+  for (const Track& track : tracks) {
+    if (const ViewPoint* point = findPoint(view, track.id)) {
+      depths.push_back((worldPosition(view, *point) - world_T_camera.translation).norm());
+    }
+  }
+  if (depths.empty()) return fallback;
+  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+  return depths[depths.size() / 2];
+}
+
+std::vector<FlowMatch> followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,
+                                    const std::vector<Eigen::Vector2f>& predictions, const FlowOptions& options) {
+  std::vector<FlowMatch> matches(tracks.size());
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    matches[i] = followPoint(from.pyramid, to.pyramid, tracks[i].pixel, predictions[i], options);
+  }
+  return matches;
+}
+
+std::vector<Track> filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap& edges,
+                                const std::vector<Track>& tracks, const std::vector<FlowMatch>& matches,
+                                const FlowOptions& options) {
+  const cv::Mat& image = to.pyramid.levels[0];
+  const auto border = static_cast<float>(options.window / 2 + 1);
+  Occupancy occupancy(image.cols, image.rows, static_cast<float>(options.redundancy));
+  std::vector<Track> kept;
+  kept.reserve(tracks.size());
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const Track& track = tracks[i];
+    const FlowMatch& match = matches[i];
+    if (!match.found || !insideImage(image, match.pixel, border)) continue;
+    // A corner-like point must come back in both directions, a point of an edge only across it.
+    const float error =
+        backwardError(from.pyramid, to.pyramid, track.pixel, match.pixel, track.normal, options);
+    if (error > static_cast<float>(options.forward_backward)) continue;
+    const float least_dot = track.corner ? -1.0f : 0.7f;
+    if (nearestEdgePoint(edges, match.pixel, track.normal, static_cast<float>(options.edge_distance), least_dot) < 0) continue;
+    if (!occupancy.take(match.pixel)) continue;
+    kept.push_back(track);
+    kept.back().pixel = match.pixel;
+  }
+  return kept;
+}
+
+}  // namespace edgeslam

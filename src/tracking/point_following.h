@@ -1,0 +1,32 @@
+// P5, P6: the tracks of the last frame are found again in this one by bidirectional flow started from the predicted pose, and
+// what is redundant, inconsistent there and back, or off the edges is dropped.
+#pragma once
+
+#include <vector>
+
+#include "flow/optical_flow.h"
+#include "geometry/camera.h"
+#include "map/map_view.h"
+#include "tracking/track.h"
+
+namespace edgeslam {
+
+// Where each track should be seen after the camera moved: its last pixel plus the motion of its map point, or, where it has
+// none, of a point at the scene's usual depth.
+std::vector<Eigen::Vector2f> predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
+                                           const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth);
+
+// Median distance of the tracks' map points from the camera [map units]; `fallback` where none has one.
+double medianDepth(const std::vector<Track>& tracks, const MapView& view, const Pose& world_T_camera, double fallback);
+
+// One entry a track: the pixel in `to`, or nothing (found false).
+std::vector<FlowMatch> followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,
+                                    const std::vector<Eigen::Vector2f>& predictions, const FlowOptions& options);
+
+// P6: keeps the tracks that were found, agree there and back across their edge, lie on an edge of `edges`, and are not too
+// near to an older one. Writes their new pixels.
+std::vector<Track> filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap& edges,
+                                const std::vector<Track>& tracks, const std::vector<FlowMatch>& matches,
+                                const FlowOptions& options);
+
+}  // namespace edgeslam

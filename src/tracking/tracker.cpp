@@ -1,0 +1,282 @@
+#include "tracking/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tracking/measurement_accuracy.h"
+#include "tracking/point_following.h"
+
+namespace edgeslam {
+namespace {
+
+// A provisional map: every point of the first frame at the same distance, with an honest uncertainty (design, section 5).
+MapView flatView(const TrackedFrame& first, double sigma) {
+  MapView view;
+  view.origin_frame = first.frame_index;
+  view.keyframe_poses.emplace_back();
+  for (const PointObservation& observation : first.observations) {
+    view.points.push_back({observation.point, 0, observation.bearing, 1.0, sigma});
+  }
+  return view;
+}
+
+}  // namespace
+
+TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey) {
+  TrackingOutcome outcome;
+  StageClock clock(outcome.times);
+  TrackedState frame = prepare(frame_index, time_ns, grey, clock);
+  if (isBlurred(blur_gate_, sharpness(grey, frame.edges), options_.blur_gate) && last_.images) {
+    const StageTimes times = outcome.times;
+    outcome = skip(time_ns, "blurred image");
+    outcome.times = times;
+    return outcome;
+  }
+  if (!last_.images) {
+    startMap(std::move(frame), outcome);
+    clock.finished("choice of points");
+    return outcome;
+  }
+
+  bool located = followAndLocate(last_, frame, clock);
+  if (!view_.initialised && (!located || static_cast<double>(frame.tracks.size()) <
+                                             options_.restart_share * static_cast<double>(tracks_at_start_))) {
+    startMap(std::move(frame), outcome);
+    outcome.reason = "starting anew: too few of the first frame's points are left";
+    clock.finished("choice of points");
+    return outcome;
+  }
+  if (view_.initialised && located) {
+    const KeyframeDecision decision = judge(frame);
+    if (decision.choice == KeyframeChoice::previous_frame) {
+      becomeKeyframe(last_, decision.reason, outcome);
+      clock.finished("choice of points");
+      located = followAndLocate(last_, frame, clock);
+    } else if (decision.choice == KeyframeChoice::current_frame) {
+      becomeKeyframe(frame, decision.reason, outcome);
+      clock.finished("choice of points");
+    }
+  }
+  if (!located) {
+    const StageTimes times = outcome.times;
+    std::vector<TrackedFrame> for_mapping = std::move(outcome.for_mapping);
+    outcome = skip(time_ns, "map points not found again");
+    outcome.state = FrameState::lost;
+    outcome.times = times;
+    outcome.for_mapping = std::move(for_mapping);
+    return outcome;
+  }
+
+  outcome.state = view_.initialised ? FrameState::tracking : FrameState::initialising;
+  outcome.reason = view_.initialised ? "" : view_.waiting_for;
+  outcome.world_T_camera = frame.world_T_camera;
+  outcome.covariance = frame.pose.covariance;
+  outcome.reference = static_cast<KeyframeId>(view_.keyframe_poses.size()) - 1;
+  outcome.reference_T_camera = view_.keyframe_poses.back().inverse() * frame.world_T_camera;
+  outcome.tracked_points = static_cast<int>(frame.tracks.size());
+  outcome.mapped_points = frame.pose.inlier_count;
+  if (!view_.initialised) outcome.for_mapping.push_back(describe(frame, -1, ""));
+  remember(std::move(frame));
+  return outcome;
+}
+
+Tracker::TrackedState Tracker::prepare(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey,
+                                       StageClock& clock) const {
+  TrackedState frame;
+  auto images = std::make_shared<FrameImages>();
+  images->frame_index = frame_index;
+  images->time_ns = time_ns;
+  images->pyramid = buildPyramid(grey, options_.flow.levels);
+  clock.finished("pyramid");
+  frame.edges = detectEdges(images->pyramid.levels[0], options_.edges);
+  clock.finished("edges");
+  frame.images = std::move(images);
+  return frame;
+}
+
+void Tracker::startMap(TrackedState frame, TrackingOutcome& outcome) {
+  outcome.state = FrameState::initialising;
+  next_keyframe_ = 0;
+  frame.tracks.clear();
+  frame.world_T_camera = Pose();
+  choosePointsIn(frame, next_keyframe_);
+  outcome.tracked_points = static_cast<int>(frame.tracks.size());
+  if (static_cast<int>(frame.tracks.size()) < options_.fewest_tracks) {
+    outcome.reason = "too few points on edges (" + std::to_string(frame.tracks.size()) + ")";
+    last_ = TrackedState();
+    return;
+  }
+  outcome.reason = "first frame of the map";
+  outcome.for_mapping.push_back(describe(frame, next_keyframe_++, "first"));
+  outcome.reference = 0;
+  view_ = flatView(outcome.for_mapping.back(), options_.flat_depth_sigma);
+  tracks_at_start_ = frame.tracks.size();
+  last_T_next_ = Pose();
+  interval_ns_ = 0;
+  last_ = std::move(frame);
+}
+
+bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, StageClock& clock) const {
+  const Pose predicted = predictPose(frame.images->time_ns);
+  const double scene_depth = medianDepth(from.tracks, view_, from.world_T_camera, 1.0);
+  const auto predictions = predictPixels(camera_, from.tracks, view_, from.world_T_camera, predicted, scene_depth);
+  const auto matches = followPoints(*from.images, *frame.images, from.tracks, predictions, options_.flow);
+  frame.tracks = filterTracks(*from.images, *frame.images, frame.edges, from.tracks, matches, options_.flow);
+  clock.finished("flow");
+
+  FramePose estimate = estimatePose(camera_, view_, frame.tracks, predicted, options_.pose);
+  if (!estimate.result.converged) return false;
+  clock.finished("pose");
+  refineTracks(camera_, view_, *frame.images, estimate.result.world_T_camera, scene_depth, options_.refinement, frame.tracks);
+  clock.finished("refinement");
+  estimate = estimatePose(camera_, view_, frame.tracks, estimate.result.world_T_camera, options_.pose);
+  const auto in_view = static_cast<double>(estimate.track_of_observation.size());
+  if (!estimate.result.converged || estimate.result.inlier_count < options_.least_inlier_share * in_view) return false;
+  frame.pose = estimate.result;
+  frame.world_T_camera = estimate.result.world_T_camera;
+
+  for (std::size_t i = 0; i < estimate.track_of_observation.size(); ++i) {
+    Track& track = frame.tracks[static_cast<std::size_t>(estimate.track_of_observation[i])];
+    track.outlier_frames = estimate.result.inliers[i] ? 0 : track.outlier_frames + 1;
+  }
+  frame.tracks.erase(std::remove_if(frame.tracks.begin(), frame.tracks.end(),
+                                    [&](const Track& t) { return view_.initialised && t.outlier_frames >= options_.outlier_frames; }),
+                     frame.tracks.end());
+  lockAlongEdges(camera_, view_, frame.world_T_camera, options_.edge_lock, frame.tracks);
+  const cv::Mat& grey = frame.images->pyramid.levels[0];
+  for (Track& track : frame.tracks) updateAccuracy(grey, options_.points, track);
+  clock.finished("pose");
+  return true;
+}
+
+KeyframeDecision Tracker::judge(const TrackedState& frame) const {
+  KeyframeEvidence evidence;
+  evidence.rotation_deg =
+      rotationAngle(view_.keyframe_poses.back().rotation, frame.world_T_camera.rotation) * 180.0 / M_PI;
+  for (const Track& track : frame.tracks) evidence.mean_displacement_px += (track.pixel - track.last_keyframe_pixel).norm();
+  evidence.mean_displacement_px /= std::max<double>(1, static_cast<double>(frame.tracks.size()));
+  evidence.tracks = static_cast<int>(frame.tracks.size());
+  evidence.average_tracks = average_tracks_;
+  evidence.mapped = frame.pose.inlier_count;
+  evidence.mapped_at_keyframe = mapped_at_keyframe_;
+  evidence.seconds = static_cast<double>(frame.images->time_ns - keyframe_time_ns_) * 1e-9;
+  evidence.frames = frames_since_keyframe_;
+  return selectKeyframe(evidence, camera_.width, options_.keyframes);
+}
+
+void Tracker::becomeKeyframe(TrackedState& frame, const char* reason, TrackingOutcome& outcome) {
+  for (Track& track : frame.tracks) {
+    track.keyframe = next_keyframe_;
+    track.keyframe_images = frame.images;
+    track.keyframe_pixel = track.last_keyframe_pixel = track.pixel;
+  }
+  choosePointsIn(frame, next_keyframe_);
+  outcome.for_mapping.push_back(describe(frame, next_keyframe_++, reason));
+  // Until mapping answers, the keyframe stands where tracking saw it.
+  view_.keyframe_poses.push_back(frame.world_T_camera);
+  keyframe_time_ns_ = frame.images->time_ns;
+  frames_since_keyframe_ = 0;
+  mapped_at_keyframe_ = 0;
+}
+
+void Tracker::choosePointsIn(TrackedState& frame, KeyframeId keyframe) {
+  std::vector<Eigen::Vector2f> occupied;
+  for (const Track& track : frame.tracks) occupied.push_back(track.pixel);
+  for (const ChosenPoint& chosen :
+       choosePoints(frame.images->pyramid.levels[0], frame.edges, occupied, options_.points)) {
+    Track track;
+    track.id = next_point_++;
+    track.pixel = track.keyframe_pixel = track.last_keyframe_pixel = chosen.pixel;
+    track.normal = chosen.normal;
+    track.corner = chosen.corner;
+    track.sigma_normal = chosen.sigma_normal;
+    track.sigma_tangent = chosen.sigma_tangent;
+    track.chain = chosen.chain;
+    track.order = nearestEdgePoint(frame.edges, chosen.pixel, chosen.normal, 1.0f, -1.0f);
+    track.keyframe = keyframe;
+    track.keyframe_images = frame.images;
+    frame.tracks.push_back(std::move(track));
+  }
+}
+
+TrackedFrame Tracker::describe(const TrackedState& frame, KeyframeId keyframe, const char* reason) const {
+  TrackedFrame description;
+  description.frame_index = frame.images->frame_index;
+  description.time_ns = frame.images->time_ns;
+  description.world_T_camera = frame.world_T_camera;
+  description.keyframe = keyframe;
+  description.reason = reason;
+  if (keyframe >= 0) description.images = frame.images;
+  description.observations.reserve(frame.tracks.size());
+  for (const Track& track : frame.tracks) {
+    const Measurement measurement = measurementOf(track);
+    description.observations.push_back(
+        {track.id, measurement, bearing(camera_, measurement.pixel), track.corner, track.chain, track.order});
+  }
+  return description;
+}
+
+Pose Tracker::predictPose(std::int64_t time_ns) const {
+  if (interval_ns_ <= 0) return last_.world_T_camera;
+  // Constant velocity, but not for long: after a gap the camera has rather stopped than flown on.
+  const double ahead = static_cast<double>(time_ns - last_.images->time_ns) / static_cast<double>(interval_ns_);
+  const double share = std::min(ahead, 3.0);
+  const Pose motion{rotationExp(share * rotationLog(last_T_next_.rotation)), share * last_T_next_.translation};
+  return last_.world_T_camera * motion;
+}
+
+TrackingOutcome Tracker::skip(std::int64_t time_ns, const std::string& reason) const {
+  TrackingOutcome outcome;
+  outcome.reason = reason;
+  if (!last_.images || !view_.initialised) return outcome;
+  outcome.state = FrameState::predicted;
+  outcome.world_T_camera = predictPose(time_ns);
+  // Hand-held cameras accelerate by some 5 m/s^2 and 10 rad/s^2; lengths are in units of the scene's depth here.
+  const double seconds = static_cast<double>(time_ns - last_.images->time_ns) * 1e-9;
+  const double translation = 2.0 * seconds * seconds, rotation = 5.0 * seconds * seconds;
+  outcome.covariance = last_.pose.covariance;
+  outcome.covariance.diagonal().head<3>().array() += translation * translation;
+  outcome.covariance.diagonal().tail<3>().array() += rotation * rotation;
+  outcome.reference = static_cast<KeyframeId>(view_.keyframe_poses.size()) - 1;
+  outcome.reference_T_camera = view_.keyframe_poses.back().inverse() * outcome.world_T_camera;
+  return outcome;
+}
+
+void Tracker::remember(TrackedState frame) {
+  const std::int64_t interval_ns = frame.images->time_ns - last_.images->time_ns;
+  last_T_next_ = last_.world_T_camera.inverse() * frame.world_T_camera;
+  interval_ns_ = interval_ns;
+  mapped_at_keyframe_ = std::max(mapped_at_keyframe_, frame.pose.inlier_count);
+  ++frames_since_keyframe_;
+  const auto tracks = static_cast<double>(frame.tracks.size());
+  average_tracks_ = average_tracks_ == 0 ? tracks : 0.95 * average_tracks_ + 0.05 * tracks;
+  last_ = std::move(frame);
+}
+
+void Tracker::adopt(const MapView& view) {
+  if (view.version <= view_.version && view.origin_frame == view_.origin_frame) return;
+  if (!last_.images || view.origin_frame != view_.origin_frame) return;
+  const bool first = view.initialised && !view_.initialised;
+  const KeyframeId latest_known = static_cast<KeyframeId>(view.keyframe_poses.size()) - 1;
+  // Keyframes that mapping has not seen yet keep their place relative to the last one that it has.
+  std::vector<Pose> newer;
+  for (std::size_t i = view.keyframe_poses.size(); i < view_.keyframe_poses.size(); ++i) {
+    newer.push_back(view_.keyframe_poses[static_cast<std::size_t>(latest_known)].inverse() * view_.keyframe_poses[i]);
+  }
+  const Pose reference = view_.keyframe_poses[std::min(view_.keyframe_poses.size(), view.keyframe_poses.size()) - 1];
+  const KeyframeId reference_id =
+      static_cast<KeyframeId>(std::min(view_.keyframe_poses.size(), view.keyframe_poses.size())) - 1;
+  const Pose moved = view.keyframe_poses[static_cast<std::size_t>(reference_id)] * reference.inverse() * last_.world_T_camera;
+  view_ = view;
+  for (const Pose& pose : newer) view_.keyframe_poses.push_back(view.keyframe_poses[static_cast<std::size_t>(latest_known)] * pose);
+  if (first) {
+    next_keyframe_ = static_cast<KeyframeId>(view_.keyframe_poses.size());
+    keyframe_time_ns_ = last_.images->time_ns;
+    frames_since_keyframe_ = options_.keyframes.least_frames_apart;
+    mapped_at_keyframe_ = options_.keyframes.fewest_mapped * 2;  // the first view asks for a keyframe with fresh points
+  }
+  const FramePose again = estimatePose(camera_, view_, last_.tracks, moved, options_.pose);
+  last_.world_T_camera = again.result.converged ? again.result.world_T_camera : moved;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,105 @@
+// Tracking: every frame its pose, its state, and whether it becomes a keyframe (sections 3.1, 3.2 and 3.4.1 of the paper).
+// Exchanges values with mapping: takes map views, gives tracked frames.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edges/blur_gate.h"
+#include "flow/optical_flow.h"
+#include "geometry/camera.h"
+#include "map/map_view.h"
+#include "tracking/edge_lock.h"
+#include "tracking/keyframe_selection.h"
+#include "tracking/patch_refinement.h"
+#include "tracking/pose_estimation.h"
+#include "tracking/stage_times.h"
+
+namespace edgeslam {
+
+struct TrackerOptions {
+  EdgeOptions edges;
+  BlurGateOptions blur_gate;
+  PointChoiceOptions points;
+  FlowOptions flow;
+  PoseOptions pose;
+  RefinementOptions refinement;
+  EdgeLockOptions edge_lock;
+  KeyframeOptions keyframes;
+  int fewest_tracks = 30;             // fewer are not enough to start a map with
+  double restart_share = 0.5;         // of the first frame's tracks: fewer left, and the initialisation starts anew
+  double flat_depth_sigma = 0.4;      // of the inverse depth in the flat start, whose mean is 1
+  int outlier_frames = 4;             // a track whose map point misses the pose so often in a row is dropped
+  double least_inlier_share = 0.35;   // of the map points in view: fewer, and the pose is not believed
+};
+
+enum class FrameState { initialising, tracking, predicted, lost };
+
+struct TrackingOutcome {
+  FrameState state = FrameState::initialising;
+  std::string reason;                        // why the state is not `tracking`
+  Pose world_T_camera;                       // measured when tracking, from motion alone when predicted
+  Matrix6d covariance = Matrix6d::Zero();    // of the right-hand update [translation; rotation]
+  KeyframeId reference = -1;                 // the keyframe that carries this frame's final pose, or -1
+  Pose reference_T_camera;
+  int tracked_points = 0;
+  int mapped_points = 0;                     // map points that agree with the pose
+  std::vector<TrackedFrame> for_mapping;     // at most two: the previous frame may become a keyframe late
+  StageTimes times;
+};
+
+class Tracker {
+ public:
+  Tracker(const Camera& camera, const TrackerOptions& options) : camera_(camera), options_(options) {}
+
+  // Takes over a newer view of the map, between two frames.
+  void adopt(const MapView& view);
+
+  // `grey`: CV_8U of the camera's size. Frames come in the order of their time stamps.
+  TrackingOutcome track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey);
+
+  // An unreadable frame: a pose from motion alone.
+  TrackingOutcome skip(std::int64_t time_ns, const std::string& reason) const;
+
+  // The last tracked frame, for drawings.
+  const std::vector<Track>& tracks() const { return last_.tracks; }
+  const EdgeMap& edges() const { return last_.edges; }
+  const MapView& view() const { return view_; }
+
+ private:
+  struct TrackedState {
+    std::shared_ptr<const FrameImages> images;  // null before the first frame
+    EdgeMap edges;
+    std::vector<Track> tracks;  // ascending ids
+    Pose world_T_camera;
+    PoseResult pose;
+  };
+
+  TrackedState prepare(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, StageClock& clock) const;
+  void startMap(TrackedState frame, TrackingOutcome& outcome);
+  bool followAndLocate(const TrackedState& from, TrackedState& frame, StageClock& clock) const;
+  KeyframeDecision judge(const TrackedState& frame) const;
+  void becomeKeyframe(TrackedState& frame, const char* reason, TrackingOutcome& outcome);
+  void choosePointsIn(TrackedState& frame, KeyframeId keyframe);
+  TrackedFrame describe(const TrackedState& frame, KeyframeId keyframe, const char* reason) const;
+  Pose predictPose(std::int64_t time_ns) const;
+  void remember(TrackedState frame);
+
+  Camera camera_;
+  TrackerOptions options_;
+  MapView view_;
+  BlurGate blur_gate_;
+  TrackedState last_;               // the last frame that was tracked
+  Pose last_T_next_;                // motion from the last tracked frame to the next, one frame interval ahead
+  std::int64_t interval_ns_ = 0;    // that the motion was measured over
+  PointId next_point_ = 0;
+  KeyframeId next_keyframe_ = 0;
+  std::size_t tracks_at_start_ = 0;
+  std::int64_t keyframe_time_ns_ = 0;
+  int frames_since_keyframe_ = 0;
+  int mapped_at_keyframe_ = 0;
+  double average_tracks_ = 0;
+};
+
+}  // namespace edgeslam
