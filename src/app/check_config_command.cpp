@@ -7,9 +7,17 @@
 #include "app/command_line.h"
 #include "app/configuration.h"
 #include "app/configuration_keys.h"
+#include "dataset/calibration_file.h"
 
 namespace edgeslam {
 namespace {
+
+void listCamera(const Camera& camera) {
+  std::cout << "  camera: " << camera.width << " x " << camera.height << " px, "
+            << (camera.model == CameraModel::kannala_brandt ? "Kannala-Brandt fisheye" : "pinhole, radial-tangential")
+            << ", focal lengths " << camera.fx << " " << camera.fy << " px, centre " << camera.cx << " " << camera.cy
+            << " px\n";
+}
 
 void listDifferences(const Configuration& configuration) {
   Settings settings = configuration.settings;
@@ -21,20 +29,23 @@ void listDifferences(const Configuration& configuration) {
     const std::string value = valueText(keys[i].field), usual = valueText(default_keys[i].field);
     if (value != usual) changes += "  " + keys[i].path + ": " + value + " (default " + usual + ")\n";
   }
-  std::cout << configuration.source << ": good; "
-            << (changes.empty() ? "all settings are the defaults" : "differs from the defaults in") << "\n"
+  std::cout << configuration.source << ": a good configuration; "
+            << (changes.empty() ? "all settings are the defaults" : "what differs from the defaults:") << "\n"
             << changes;
   if (configuration.camera) {
-    const Camera& camera = *configuration.camera;
-    std::cout << "  camera: " << camera.width << " x " << camera.height << " px, "
-              << (camera.model == CameraModel::kannala_brandt ? "Kannala-Brandt fisheye" : "pinhole, radial-tangential")
-              << ", focal lengths " << camera.fx << " " << camera.fy << " px\n";
+    listCamera(*configuration.camera);
   } else {
     std::cout << "  camera: not given; taken from beside the recording\n";
   }
 }
 
 int checkConfiguration(const std::string& path) {
+  if (isCalibrationFile(path)) {
+    const Camera camera = readCalibration(path);
+    std::cout << path << ": a good calibration\n";
+    listCamera(camera);
+    return exit_done;
+  }
   std::vector<std::string> problems;
   const Configuration configuration = readConfiguration(path, problems);
   for (const std::string& problem : problems) std::cerr << problem << "\n";
@@ -51,8 +62,9 @@ void addCheckConfigCommand(CLI::App& app, int& exit_code) {
     bool print_default = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("check-config", "Check a configuration file and say what it changes");
-  CLI::Option* file = command->add_option("FILE", options->path, "Configuration file (YAML)");
+  CLI::App* command =
+      app.add_subcommand("check-config", "Check a configuration or calibration file and say what it changes");
+  CLI::Option* file = command->add_option("FILE", options->path, "Configuration or camera calibration (YAML)");
   CLI::Option* print = command->add_flag("--print-default", options->print_default,
                                          "Print the default configuration, with documentation");
   file->excludes(print);

@@ -10,9 +10,7 @@
 #include <string>
 
 #include "app/check_config_command.h"
-#if __has_include("app/evaluate_command.h")
 #include "app/evaluate_command.h"
-#endif
 #if __has_include("app/replay_command.h")
 #include "app/replay_command.h"
 #endif
@@ -46,9 +44,7 @@ int parseAndRun(int argc, const char* const* argv) {
 #if __has_include("app/replay_command.h")
   addReplayCommand(app, exit_code);
 #endif
-#if __has_include("app/evaluate_command.h")
   addEvaluateCommand(app, exit_code);
-#endif
 #if __has_include("app/simulate_command.h")
   addSimulateCommand(app, exit_code);
 #endif

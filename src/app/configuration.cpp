@@ -49,6 +49,9 @@ class Reader {
   void readDocument(const YAML::Node& document) {
     if (document.IsNull()) return;
     if (!document.IsMap()) return tell(document.Mark().line, "a mapping of sections is expected here");
+    if (isCalibration(document)) {
+      return tell(-1, "is a camera's calibration; a configuration names it by camera.calibration");
+    }
     forEachKey(document, "", [this](const std::string& name, const YAML::Node& key, const YAML::Node& value) {
       if (sections_.count(name) == 0) return tellUnknown(key.Mark().line, name);
       readSection(name, key.Mark().line, value);
@@ -102,8 +105,8 @@ class Reader {
     std::string wrong;
     if (!value.IsScalar()) {
       wrong = value.IsNull() ? "has no value" : "a list or mapping";
-    } else if (value.Tag() == "!") {
-      wrong = "\"" + value.Scalar() + "\" is a quoted text";
+    } else if (value.Tag() != "?") {  // quoted, or marked as of another type
+      wrong = "\"" + value.Scalar() + "\" is a text";
     } else {
       wrong = setValue(*key, value.Scalar());
     }
@@ -168,9 +171,19 @@ Configuration readConfiguration(const std::string& path) {
   std::vector<std::string> problems;
   Configuration configuration = readConfiguration(path, problems);
   if (problems.empty()) return configuration;
-  const std::string others =
-      problems.size() == 1 ? "" : " (`edgeslam check-config` lists " + std::to_string(problems.size()) + " problems)";
-  throw InputError(problems.front() + others);
+  if (problems.size() == 1) throw InputError(problems.front());
+  throw InputError(problems.front() + " (the first of " + std::to_string(problems.size()) +
+                   " problems; `edgeslam check-config` lists them)");
+}
+
+bool isCalibrationFile(const std::string& path) {
+  try {
+    return isCalibration(YAML::Load(readText(path)));
+  } catch (const YAML::Exception&) {
+    return false;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 std::string formatConfiguration(const Configuration& configuration) {

@@ -26,6 +26,9 @@ Configuration readConfiguration(const std::string& path);
 // the configuration is not to be used.
 Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems);
 
+// True where the file is a camera's calibration rather than a configuration; false also where it cannot be read.
+bool isCalibrationFile(const std::string& path);
+
 // The effective configuration as YAML: reads back as the same one.
 std::string formatConfiguration(const Configuration& configuration);
 

@@ -153,6 +153,12 @@ std::string poseFromMapping(const YAML::Node& node, Pose& pose) {
 
 }  // namespace
 
+bool isCalibration(const YAML::Node& document) {
+  const auto has = [&](const char* key) { return static_cast<bool>(document[key]); };
+  return document.IsMap() &&
+         (has("fx") || has("image_width") || has("camera_matrix") || has("cam0") || has("intrinsics"));
+}
+
 std::vector<std::string> cameraKeys() {
   std::vector<std::string> names{"camera.calibration", "camera.body_T_camera", "camera.model"};
   Camera camera;

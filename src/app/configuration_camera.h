@@ -15,6 +15,9 @@ namespace edgeslam {
 // Receives a problem and the line (from 0) at which it is.
 using TellProblem = std::function<void(int line, const std::string& problem)>;
 
+// True for a document that is a camera's calibration by itself, of any of the kinds that readCalibration knows.
+bool isCalibration(const YAML::Node& document);
+
 // Names of the keys that the section may hold, each with "camera." before it.
 std::vector<std::string> cameraKeys();
 
