@@ -23,7 +23,7 @@ ImagePyramid buildPyramid(const cv::Mat& grey, int level_count) {
     const cv::Mat& finer = pyramid.levels.back();
     if (finer.cols < 32 || finer.rows < 32) break;
     cv::Mat coarser;
-    cv::pyrDown(finer, coarser, cv::Size(), cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);
+    cv::pyrDown(finer, coarser, cv::Size(), cv::BORDER_REFLECT_101);
     pyramid.levels.push_back(withBorder(coarser));
   }
   return pyramid;
