@@ -2,5 +2,5 @@
 # Checks that every source file is as clang-format would write it. usage: formatting.sh CLANG_FORMAT REPOSITORY
 set -eu
 cd "$2"
-find src include drivers tests -type f \( -name '*.h' -o -name '*.cpp' \) -print0 | sort -z |
+find . -path ./build -prune -o -path './.*' -prune -o -type f \( -name '*.h' -o -name '*.cpp' \) -print0 | sort -z |
   xargs -0 "$1" --dry-run --Werror
