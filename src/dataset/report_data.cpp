@@ -95,25 +95,37 @@ ordered_json keyframesJson(const RunResult& result, const Similarity& display, c
   return keyframes;
 }
 
-// Frames in a row with the same state and reason.
-ordered_json stateRunsJson(const RunResult& result, const Clock& clock) {
-  ordered_json runs = ordered_json::array();
-  std::size_t begin = 0;
-  for (std::size_t i = 1; i <= result.frames.size(); ++i) {
-    const FrameRecord& first = result.frames[begin];
-    if (i < result.frames.size() && result.frames[i].state == first.state && result.frames[i].reason == first.reason &&
-        result.frames[i].has_final_pose == first.has_final_pose) {
-      continue;
+// Numbers of the frames that begin a stretch of equal state, and of equal reason too where `by_reason`; at the end the
+// number of frames.
+std::vector<std::size_t> stretches(const RunResult& result, bool by_reason) {
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < result.frames.size(); ++i) {
+    const FrameRecord& frame = result.frames[i];
+    const FrameRecord& before = result.frames[begins.empty() ? 0 : begins.back()];
+    if (i == 0 || frame.state != before.state || frame.has_final_pose != before.has_final_pose ||
+        (by_reason && frame.reason != before.reason)) {
+      begins.push_back(i);
     }
-    const FrameRecord& after = result.frames[std::min(i, result.frames.size() - 1)];
+  }
+  begins.push_back(result.frames.size());
+  return begins;
+}
+
+// Reasons that change with every frame of a long run are given only where they begin.
+ordered_json stateRunsJson(const RunResult& result, const Clock& clock) {
+  std::vector<std::size_t> begins = stretches(result, true);
+  if (begins.size() > most_samples) begins = stretches(result, false);
+  ordered_json runs = ordered_json::array();
+  for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+    const FrameRecord& first = result.frames[begins[i]];
+    const FrameRecord& after = result.frames[std::min(begins[i + 1], result.frames.size() - 1)];
     runs.push_back({{"from", clock(first.time_ns)},
                     {"to", clock(after.time_ns)},
                     {"state", stateName(first.state)},
                     {"reason", first.reason},
                     {"final_pose", first.has_final_pose},
                     {"first_frame", first.index},
-                    {"frames", i - begin}});
-    begin = i;
+                    {"frames", begins[i + 1] - begins[i]}});
   }
   return runs;
 }

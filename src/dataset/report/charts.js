@@ -130,7 +130,7 @@ function linePath(times, values, x, y, gap) {
   let last = -Infinity;
   times.forEach((time, i) => {
     if (values[i] === null) return;
-    path += (time - last > gap ? 'M' : 'L') + x(time).toFixed(1) + ' ' + y(values[i]).toFixed(1);
+    path += (!path || time - last > gap ? 'M' : 'L') + x(time).toFixed(1) + ' ' + y(values[i]).toFixed(1);
     last = time;
   });
   return path;

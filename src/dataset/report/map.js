@@ -61,9 +61,10 @@ function viewpoint(map, trajectory) {
   if (back.length() < 0.15 * radius) back.set(-0.5, -0.85, 0);
   back.normalize();
   const side = new THREE.Vector3(-back.y, back.x, 0);
-  const from = centre.clone().addScaledVector(back, 1.75 * radius).addScaledVector(side, 0.6 * radius);
-  from.z += 0.85 * radius;
-  return { centre, from, radius };
+  const target = centre.clone().lerp(way, 0.3);
+  const from = target.clone().addScaledVector(back, 1.5 * radius).addScaledVector(side, 0.5 * radius);
+  from.z += 0.7 * radius;
+  return { target, from, radius };
 }
 
 function lineOf(positions, colour) {
@@ -183,8 +184,10 @@ function mapView(host, run, controls, cursor) {
     render();
   };
   const reset = () => {
-    camera.position.copy(view.from);
-    orbit.target.copy(view.centre);
+    // A narrow window needs more distance for the same width.
+    const distance = Math.max(1, 1.5 / camera.aspect);
+    camera.position.copy(view.target).lerp(view.from, distance);
+    orbit.target.copy(view.target);
     orbit.update();
     render();
   };

@@ -44,7 +44,7 @@ function planeView(host, run, a, b, label, cursor) {
       svg.append(svgElement('line', { x1: x(tick.value), x2: x(tick.value), y1: frame.y, y2: frame.y + frame.height, class: 'grid' }),
         svgElement('text', { x: x(tick.value), y: frame.y + frame.height + 16, 'text-anchor': 'middle' }, tick.label));
     }
-    for (const tick of roundTicks(centre[1] - half[1], centre[1] + half[1], Math.max(2, Math.floor(frame.height / 60)))) {
+    for (const tick of roundTicks(centre[1] - half[1], centre[1] + half[1], Math.max(3, Math.floor(frame.height / 60)))) {
       svg.append(svgElement('line', { x1: frame.x, x2: frame.x + inner, y1: y(tick.value), y2: y(tick.value), class: 'grid' }),
         svgElement('text', { x: frame.x - 6, y: y(tick.value) + 4, 'text-anchor': 'end' }, tick.label));
     }
@@ -54,22 +54,21 @@ function planeView(host, run, a, b, label, cursor) {
     const plot = svgElement('g', { 'clip-path': `url(#${clip})` });
     const path = (series, colour, strokeWidth) => {
       if (!series) return;
-      const along = series.times.map((time, i) => i);
       let line = '';
-      along.forEach((i) => {
+      series.times.forEach((time, i) => {
         const px = series.positions[3 * i + a];
         const py = series.positions[3 * i + b];
         if (px === null || py === null) return;
-        const broken = i === 0 || series.times[i] - series.times[i - 1] > gap;
+        const broken = i === 0 || time - series.times[i - 1] > gap;
         line += (broken || !line ? 'M' : 'L') + x(px).toFixed(1) + ' ' + y(py).toFixed(1);
       });
       plot.append(svgElement('path', { d: line, class: 'line', style: `stroke: ${colour}; stroke-width: ${strokeWidth}` }));
     };
-    path(run.truth, 'var(--truth)', 3);
-    path(run.live, 'var(--live)', 1);
+    path(run.truth, 'var(--truth)', 4.5);
+    path(run.live, 'var(--live)', 0.9);
     path(run.trajectory, 'var(--estimate)', 1.8);
     for (const keyframe of run.keyframes) {
-      const dot = svgElement('circle', { cx: x(keyframe.position[a]), cy: y(keyframe.position[b]), r: 2.8, style: 'fill: var(--keyframe)' });
+      const dot = svgElement('circle', { cx: x(keyframe.position[a]), cy: y(keyframe.position[b]), r: 2.6, style: 'fill: var(--keyframe)' });
       dot.addEventListener('mousemove', (event) => {
         tooltip.show(event, `keyframe ${keyframe.id}, frame ${keyframe.frame}, ${keyframe.time.toFixed(2)} s\n${keyframe.reason}`);
         cursor.set(keyframe.time);
