@@ -11,9 +11,7 @@
 
 #include "app/check_config_command.h"
 #include "app/evaluate_command.h"
-#if __has_include("app/replay_command.h")
 #include "app/replay_command.h"
-#endif
 #if __has_include("app/simulate_command.h")
 #include "app/simulate_command.h"
 #endif
@@ -41,9 +39,7 @@ int parseAndRun(int argc, const char* const* argv) {
   app.set_version_flag("--version", std::string("edgeslam ") + EDGESLAM_VERSION);
   app.require_subcommand(1);
   app.footer("Exit codes: 0 done, 1 the run failed, 2 wrong use or bad input.");
-#if __has_include("app/replay_command.h")
   addReplayCommand(app, exit_code);
-#endif
   addEvaluateCommand(app, exit_code);
 #if __has_include("app/simulate_command.h")
   addSimulateCommand(app, exit_code);
