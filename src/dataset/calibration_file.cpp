@@ -112,11 +112,20 @@ class Section {
     throw InputError(placeInFile(path_, node.Mark().line + 1) + message);
   }
 
+  // An absent value has the place of what follows it, so its key stands for it.
+  YAML::Node keyNode(const std::string& key) const {
+    for (const auto& entry : node_) {
+      if (entry.first.Scalar() == key) return entry.first;
+    }
+    return node_;
+  }
+
   double toNumber(const YAML::Node& value, const std::string& key) const {
     const std::optional<double> number = value.IsScalar() ? parseNumber(value.Scalar()) : std::nullopt;
     if (!number) {
-      fail(value, "'" + key + "' must be a finite number" +
-                      (value.IsScalar() ? ", found '" + value.Scalar() + "'" : std::string()));
+      fail(value.IsNull() ? keyNode(key) : value,
+           "'" + key + "' must be a finite number" +
+               (value.IsScalar() ? ", found '" + value.Scalar() + "'" : std::string()));
     }
     return *number;
   }

@@ -59,6 +59,10 @@ FrameCompanions findCompanions(const std::vector<fs::path>& folders) {
         companions.ground_truth_path = (folder / name).string();
       }
     }
+    for (const std::string& name : fileNames(folder)) {
+      const bool is_icl_nuim = fs::path(name).extension() == ".freiburg";
+      if (is_icl_nuim && companions.ground_truth_path.empty()) companions.ground_truth_path = (folder / name).string();
+    }
   }
   return companions;
 }
@@ -120,6 +124,10 @@ std::unique_ptr<FrameSource> openFrameSource(const std::string& path) {
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw InputError(path + ": no such folder or video");
   if (fs::is_directory(status)) return openFolder(path);
+  // FFmpeg would play a text file, too, as a film of its letters.
+  if (!isVideoFileName(fs::path(path).filename().string())) {
+    throw InputError(path + ": expected a folder of frames or a video file (.mp4, .mkv, .avi, .mov, ...)");
+  }
   const fs::path folder = fs::path(path).parent_path();
   return makeVideoSource(path, findCompanions({folder.empty() ? fs::path(".") : folder}));
 }

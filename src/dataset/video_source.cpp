@@ -18,7 +18,8 @@ namespace {
 std::vector<std::int64_t> readTimes(const std::string& path) {
   std::vector<std::int64_t> times;
   for (const TextLine& line : readTextLines(path)) {
-    const std::optional<std::int64_t> time = parseStamp(splitColumns(line.text).front());
+    const std::vector<std::string_view> columns = splitColumns(line.text);
+    const std::optional<std::int64_t> time = columns.empty() ? std::nullopt : parseStamp(columns[0]);
     if (!time) throw InputError(placeInFile(path, line.number) + "'" + line.text + "' is not a time stamp [s]");
     if (!times.empty() && *time <= times.back()) {
       throw InputError(placeInFile(path, line.number) + "the time stamp " + formatStamp(*time) + " s " +
@@ -197,8 +198,8 @@ class VideoSource : public FrameSource {
 }  // namespace
 
 bool isVideoFileName(const std::string& name) {
-  constexpr std::array<const char*, 9> kExtensions{".mp4", ".mkv", ".avi", ".mov", ".webm",
-                                                   ".m4v", ".ts",  ".mpg", ".h264"};
+  constexpr std::array<const char*, 12> kExtensions{".wmv", ".mpeg", ".mjpeg", ".mp4", ".mkv", ".avi",
+                                                    ".mov", ".webm", ".m4v",   ".ts",  ".mpg", ".h264"};
   std::string extension = std::filesystem::path(name).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
