@@ -18,24 +18,27 @@ struct Residual {
   Eigen::Vector2d derivative;
 };
 
-// A fisheye sees beyond 90 degrees; a pinhole's distortion folds far outside the image, where its derivative turns
-// round.
-bool isVisible(const Camera& camera, const Eigen::Vector3d& point) {
+// A fisheye sees beyond 90 degrees.
+bool isAhead(const Camera& camera, const Eigen::Vector3d& point) {
   const double least_z = camera.model == CameraModel::kannala_brandt ? -0.5 : 0.02;
   return point.z() > least_z * point.norm();
+}
+
+// A polynomial distortion folds back far outside the image, where its derivative (symmetric but for fx and fy) is no
+// longer positive definite.
+bool isFolded(const Camera& camera, const Eigen::Matrix<double, 2, 3>& jacobian) {
+  if (camera.model == CameraModel::kannala_brandt) return false;
+  return jacobian(0, 0) <= 0 || jacobian(0, 0) * jacobian(1, 1) <= jacobian(0, 1) * jacobian(1, 0);
 }
 
 // False where the view can't see the point.
 bool evaluate(const Camera& camera, const Eigen::Vector3d& host_bearing, const TriangulationView& view,
               double inverse_depth, Residual* residual) {
   const Eigen::Vector3d point = view.view_T_host.rotation * host_bearing + inverse_depth * view.view_T_host.translation;
-  if (!isVisible(camera, point)) return false;
+  if (!isAhead(camera, point)) return false;
   Eigen::Matrix<double, 2, 3> jacobian;
   const Eigen::Vector2d pixel = project(camera, point, &jacobian);
-  if (camera.model == CameraModel::pinhole_radial_tangential &&
-      jacobian(0, 0) * jacobian(1, 1) <= jacobian(0, 1) * jacobian(1, 0)) {
-    return false;
-  }
+  if (isFolded(camera, jacobian)) return false;
   const Eigen::Matrix2d whiten = whitening(view.measurement);
   residual->error = whiten * (pixel - view.measurement.pixel);
   residual->derivative = whiten * (jacobian * view.view_T_host.translation);
@@ -72,13 +75,13 @@ NormalEquation accumulate(const Camera& camera, const Eigen::Vector3d& host_bear
 
 // The best of a few inverse depths, spread so that the parallax towards the view with the widest baseline (seen across
 // the bearing) is covered from 0 to 60 degrees, more densely where it is small. Negative where none is visible.
-double sampleInverseDepth(const Camera& camera, const Eigen::Vector3d& host_bearing,
-                          const std::vector<TriangulationView>& views) {
+double bestStart(const Camera& camera, const Eigen::Vector3d& host_bearing,
+                 const std::vector<TriangulationView>& views) {
   double baseline = 0, widest = 0, angle = 0;  // angle at the host between the bearing and the baseline
   for (const TriangulationView& view : views) {
     const Eigen::Vector3d centre = -(view.view_T_host.rotation.conjugate() * view.view_T_host.translation);
     const double across = host_bearing.cross(centre).norm();
-    if (across <= widest) continue;
+    if (!(across > widest)) continue;
     widest = across;
     baseline = centre.norm();
     angle = std::atan2(across, host_bearing.dot(centre));
@@ -90,10 +93,9 @@ double sampleInverseDepth(const Camera& camera, const Eigen::Vector3d& host_bear
     const double parallax = share * share * std::min(kLargestParallax, 0.95 * (M_PI - angle));
     const double inverse_depth = std::sin(parallax) / (baseline * std::sin(angle + parallax));  // law of sines
     const double cost = accumulate(camera, host_bearing, views, inverse_depth).robust_cost;
-    if (cost < best_cost) {
-      best_cost = cost;
-      best = inverse_depth;
-    }
+    if (!(cost < best_cost)) continue;
+    best_cost = cost;
+    best = inverse_depth;
   }
   return best;
 }
@@ -115,8 +117,7 @@ TriangulationResult triangulate(const Camera& camera, const Eigen::Vector3d& hos
                                 const std::vector<TriangulationView>& views, double initial_inverse_depth) {
   TriangulationResult result;
   result.sigma = result.largest_error = kInfinity;
-  double inverse_depth =
-      initial_inverse_depth > 0 ? initial_inverse_depth : sampleInverseDepth(camera, host_bearing, views);
+  double inverse_depth = initial_inverse_depth > 0 ? initial_inverse_depth : bestStart(camera, host_bearing, views);
   if (!(inverse_depth >= 0) || !std::isfinite(inverse_depth)) return result;
   NormalEquation at = accumulate(camera, host_bearing, views, inverse_depth);
   if (!std::isfinite(at.cost)) return result;

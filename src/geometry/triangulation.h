@@ -27,7 +27,8 @@ struct TriangulationResult {
 };
 
 // Gauss-Newton on the inverse depth over all views, without allocation. Starts from `initial_inverse_depth` where that
-// is positive, else from the best of a few depths that spread the parallax from 0 to 60 degrees.
+// is positive, else from the best of what each view alone asks for and of a few depths with 0 to 60 degrees of
+// parallax.
 TriangulationResult triangulate(const Camera& camera, const Eigen::Vector3d& host_bearing,
                                 const std::vector<TriangulationView>& views, double initial_inverse_depth = 0);
 
