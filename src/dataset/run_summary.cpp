@@ -39,6 +39,7 @@ std::vector<StageTimes> allStageTimes(const RunResult& result) {
     if (!frame.stage_ms.empty()) totals.push_back(totalMilliseconds(frame));
   }
   std::vector<StageTimes> stages;
+  stages.reserve(times.size() + 1);
   for (const auto& [name, values] : times) stages.push_back(stageTimes(name, values));
   if (!totals.empty()) stages.push_back(stageTimes("total", totals));
   return stages;

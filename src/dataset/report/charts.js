@@ -29,9 +29,9 @@ function roundTicks(low, high, count) {
 
 // The time [s] that the mouse points at, or null; every chart and view listens.
 class TimeCursor {
-  constructor() { this.listeners = []; }
-  listen(listener) { this.listeners.push(listener); }
-  set(time) { for (const listener of this.listeners) listener(time); }
+  constructor() { this.listeners = new Map(); }
+  listen(host, listener) { this.listeners.set(host, listener); }  // one for each element, the last
+  set(time) { for (const listener of this.listeners.values()) listener(time); }
 }
 
 // Index of the value nearest to `time` in ascending `times`, or -1.
@@ -86,7 +86,7 @@ function drawAtEachWidth(host, draw) {
 // content(svg, x, y, area): draws between the axes}. Without `unit` there is no vertical axis.
 function timeChart(host, options) {
   drawAtEachWidth(host, (width) => {
-    const area = { left: options.unit ? 52 : 8, right: width - 10, top: 14, bottom: options.height - 30 };
+    const area = { left: 52, right: width - 10, top: 14, bottom: options.height - 30 };
     const span = Math.max(options.to - options.from, 1e-9);
     const range = Math.max(options.high - options.low, 1e-12);
     const x = (time) => area.left + (time - options.from) / span * (area.right - area.left);
@@ -107,7 +107,7 @@ function timeChart(host, options) {
     }
     const mark = svgElement('line', { y1: area.top, y2: area.bottom, class: 'cursor', visibility: 'hidden' });
     svg.append(mark);
-    options.cursor.listen((time) => {
+    options.cursor.listen(host, (time) => {
       const shown = time !== null && time >= options.from && time <= options.to;
       mark.setAttribute('visibility', shown ? 'visible' : 'hidden');
       if (shown) { mark.setAttribute('x1', x(time)); mark.setAttribute('x2', x(time)); }

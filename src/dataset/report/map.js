@@ -96,6 +96,10 @@ function frustaOf(run, depth) {
 
 // Draws `run` into `host`; controls: {colour, sigma, sigmaValue, lines, frusta, reset, caption} are elements of the page.
 function mapView(host, run, controls, cursor) {
+  if (run.map.shown === 0 && run.trajectory.times.length === 0) {
+    host.innerHTML = '<p class="notice">The map is empty: there is nothing to draw.</p>';
+    return;
+  }
   let renderer;
   try {
     renderer = new THREE.WebGLRenderer({ antialias: true });
@@ -198,7 +202,7 @@ function mapView(host, run, controls, cursor) {
     camera.updateProjectionMatrix();
     render();
   };
-  cursor.listen((time) => {
+  cursor.listen(host, (time) => {
     const i = time === null ? -1 : nearestIndex(run.trajectory.times, time);
     if (i < 0 && !mark.visible) return;
     mark.visible = i >= 0;

@@ -77,7 +77,7 @@ function planeView(host, run, a, b, label, cursor) {
       plot.append(dot);
     }
     const mark = svgElement('circle', { r: 5, class: 'cursor-dot', visibility: 'hidden' });
-    cursor.listen((time) => {
+    cursor.listen(host, (time) => {
       const i = time === null ? -1 : nearestIndex(run.trajectory.times, time);
       const shown = i >= 0 && Math.abs(run.trajectory.times[i] - time) < gap;
       mark.setAttribute('visibility', shown ? 'visible' : 'hidden');
