@@ -37,4 +37,11 @@ inline Eigen::Vector3d worldPosition(const MapView& view, const ViewPoint& point
   return view.keyframe_poses[static_cast<std::size_t>(point.host)] * (point.host_bearing / point.inverse_depth);
 }
 
+// Standard deviation of the inverse depths of a flat start, whose mean is 1: small, since it is their common depth that keeps
+// rotation and translation apart where a scene has lines only.
+constexpr double flat_start_sigma = 0.0;
+
+// A provisional map: every point of the first frame at the distance 1 (design, section 5: initialisation).
+MapView flatView(const TrackedFrame& first);
+
 }  // namespace edgeslam

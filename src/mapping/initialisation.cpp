@@ -36,7 +36,7 @@ void Initialisation::start(const TrackedFrame& first) {
   first_ = first;
   frames_.clear();
   inverse_depths_.assign(first.observations.size(), 1.0);
-  depth_sigmas_.assign(first.observations.size(), options_.prior_sigma);
+  depth_sigmas_.assign(first.observations.size(), flat_start_sigma);
   accepted_ = InitialStructure();
   waiting_for_ = "motion of the camera";
   changed_ = false;

@@ -86,9 +86,12 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   };
   std::vector<KeyframeId> ordered_free = free;
   std::sort(ordered_free.begin(), ordered_free.end());
-  // With nothing else to hold it, the oldest keyframe holds the pose and the newest one's distance from it the scale.
+  // Keyframe 0 is the world's origin and never moves. With nothing else to hold it, the oldest keyframe holds the pose and the
+  // newest one's distance from it the scale.
   const bool hold_oldest = fixed.empty();
-  for (const KeyframeId keyframe : ordered_free) addCamera(keyframe, hold_oldest && keyframe == ordered_free.front());
+  for (const KeyframeId keyframe : ordered_free) {
+    addCamera(keyframe, keyframe == 0 || (hold_oldest && keyframe == ordered_free.front()));
+  }
   const std::vector<PointId> points = pointsSeenBy(map, camera_of);
   for (const KeyframeId keyframe : fixed) addCamera(keyframe, true);
   if (hold_oldest) problem.scale_camera = static_cast<int>(ordered_free.size()) - 1;

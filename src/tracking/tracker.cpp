@@ -7,21 +7,6 @@
 #include "tracking/point_following.h"
 
 namespace edgeslam {
-namespace {
-
-// A provisional map: every point of the first frame at the same distance, with an honest uncertainty (design, section 5).
-MapView flatView(const TrackedFrame& first, double sigma) {
-  MapView view;
-  view.origin_frame = first.frame_index;
-  view.keyframe_poses.emplace_back();
-  for (const PointObservation& observation : first.observations) {
-    view.points.push_back({observation.point, 0, observation.bearing, 1.0, sigma});
-  }
-  return view;
-}
-
-}  // namespace
-
 TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey) {
   TrackingOutcome outcome;
   StageClock clock(outcome.times);
@@ -109,7 +94,7 @@ void Tracker::startMap(TrackedState frame, TrackingOutcome& outcome) {
   outcome.reason = "first frame of the map";
   outcome.for_mapping.push_back(describe(frame, next_keyframe_++, "first"));
   outcome.reference = 0;
-  view_ = flatView(outcome.for_mapping.back(), options_.flat_depth_sigma);
+  view_ = flatView(outcome.for_mapping.back());
   tracks_at_start_ = frame.tracks.size();
   last_T_next_ = Pose();
   interval_ns_ = 0;

@@ -29,7 +29,6 @@ struct TrackerOptions {
   KeyframeOptions keyframes;
   int fewest_tracks = 30;             // fewer are not enough to start a map with
   double restart_share = 0.5;         // of the first frame's tracks: fewer left, and the initialisation starts anew
-  double flat_depth_sigma = 0.4;      // of the inverse depth in the flat start, whose mean is 1
   int outlier_frames = 4;             // a track whose map point misses the pose so often in a row is dropped
   double least_inlier_share = 0.35;   // of the map points in view: fewer, and the pose is not believed
 };
