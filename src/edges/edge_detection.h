@@ -1,5 +1,5 @@
-// P1, P2: edges as zero crossings of a difference of Gaussians, one pixel wide, with sub-pixel position and normal from a
-// plane fitted to the DoG around the crossing; joined into chains along the edge (P3).
+// P1, P2: edges as zero crossings of a difference of Gaussians, one pixel wide, with their sub-pixel position across
+// the edge and the normal from the grey values' gradient; joined into chains along the edge (P3).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,12 +9,12 @@
 namespace edgeslam {
 
 struct EdgeOptions {
-  double sigma = 1.78;               // of the narrower Gaussian [px]
-  double sigma_ratio = 1.26;         // wider over narrower
-  int plane_fit_radius = 2;          // the DoG's plane is fitted over (2 r + 1)^2 pixels [px]
-  double sign_balance = 0.4;         // most |positive - negative| / all of the DoG's signs in that window
-  double gradient_threshold = 1.5;   // least grey-value gradient across the edge [grey/px]
-  int shortest_chain = 6;            // shorter chains are no edges [points]
+  double sigma = 1.78;              // of the narrower Gaussian [px]
+  double sigma_ratio = 1.26;        // wider over narrower
+  int plane_fit_radius = 2;         // an edge is told by a plane fitted to (2 r + 1)^2 pixels of the DoG [px]
+  double sign_balance = 0.4;        // most |positive - negative| / all of the DoG's signs in that window
+  double gradient_threshold = 1.5;  // least grey-value gradient across the edge [grey/px]
+  int shortest_chain = 6;           // shorter chains are no edges [points]
 };
 
 struct EdgePoint {
@@ -26,10 +26,12 @@ struct EdgePoint {
   int next = -1;
 };
 
+// Ordered by chain, and along each chain with the brighter side on the left as seen on the screen. A closed chain's
+// last point leads on to its first.
 struct EdgeMap {
-  std::vector<EdgePoint> points;  // ordered by chain, and along each chain
+  std::vector<EdgePoint> points;
   int chain_count = 0;
-  cv::Mat index;                  // CV_32S, size of the image: index of the point in that pixel, or -1
+  cv::Mat index;  // CV_32S, size of the image: index of the point in that pixel, or -1
 };
 
 // `grey` is CV_8U. An image without edges gives an empty map.

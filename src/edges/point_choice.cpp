@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 
 #include "edges/point_spacing.h"
@@ -11,6 +12,7 @@ namespace edgeslam {
 namespace {
 
 constexpr int kStep = 2;  // along a chain every second edge point is a candidate: tensors change little in between
+constexpr int kNormalReach = 6;        // neighbours on each side over which a normal is averaged [points]
 constexpr int kDirections = 4;         // directions of an edge that are told apart, over half a turn
 constexpr float kLeastL2 = 1e-6F;      // [grey^2/px^2]
 constexpr float kUnknownAlong = 1000;  // standard deviation of a point that nothing holds along its edge [px]
@@ -33,17 +35,40 @@ int directionOf(const Eigen::Vector2f& normal) {
   return static_cast<int>(std::lround(half_turns * kDirections)) % kDirections;
 }
 
-Candidate makeCandidate(const TwiceGradient& gradient, const EdgePoint& edge, const PointChoiceOptions& options) {
+// Mean normal of an edge point and as many neighbours along the chain before as after it, so that a bend does not turn
+// it. A third as noisy as the point's own, and free of the skew that central differences give the tensor on sharp
+// edges.
+Eigen::Vector2f normalAlongChain(const EdgeMap& edges, const EdgePoint& edge) {
+  Eigen::Vector2f sum = edge.normal;
+  int before = edge.previous;
+  int after = edge.next;
+  for (int step = 0; step < kNormalReach && before >= 0 && after >= 0; ++step) {
+    const EdgePoint& behind = edges.points[static_cast<size_t>(before)];
+    const EdgePoint& ahead = edges.points[static_cast<size_t>(after)];
+    sum += behind.normal + ahead.normal;
+    before = behind.previous;
+    after = ahead.next;
+  }
+  const float length = sum.norm();
+  return length > 0 ? Eigen::Vector2f(sum / length) : edge.normal;
+}
+
+Candidate makeCandidate(const TwiceGradient& gradient, const EdgeMap& edges, const EdgePoint& edge,
+                        const PointChoiceOptions& options) {
   Candidate candidate;
   candidate.gradient = edge.gradient;
   ChosenPoint& point = candidate.point;
   point.pixel = edge.pixel;
   point.tensor = structureTensor(gradient, edge.pixel, options.tensor_window);
-  point.normal = point.tensor.direction.dot(edge.normal) < 0 ? -point.tensor.direction : point.tensor.direction;
   point.chain = edge.chain;
   const float l1 = point.tensor.l1;
   const float l2 = point.tensor.l2;
   point.corner = l2 > static_cast<float>(options.corner_ratio) * l1 && l2 > static_cast<float>(options.corner_strength);
+  if (point.corner) {
+    point.normal = point.tensor.direction.dot(edge.normal) < 0 ? -point.tensor.direction : point.tensor.direction;
+  } else {
+    point.normal = normalAlongChain(edges, edge);
+  }
   point.sigma_normal = static_cast<float>(point.corner ? options.sigma_corner : options.sigma_edge);
   const float informative_l2 = std::max(l2 - static_cast<float>(options.noise), kLeastL2);
   point.sigma_tangent = std::min(point.sigma_normal * std::sqrt(std::max(1.0F, l1 / informative_l2)), kUnknownAlong);
@@ -62,7 +87,7 @@ std::vector<Candidate> findCandidates(const cv::Mat& grey, const EdgeMap& edges,
     const EdgePoint& edge = edges.points[i];
     if (edge.pixel.x() < border || edge.pixel.y() < border || edge.pixel.x() > right || edge.pixel.y() > bottom)
       continue;
-    if (spacing.isFree(edge.pixel)) candidates.push_back(makeCandidate(gradient, edge, options));
+    if (spacing.isFree(edge.pixel)) candidates.push_back(makeCandidate(gradient, edges, edge, options));
   }
   return candidates;
 }

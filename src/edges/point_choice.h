@@ -26,8 +26,10 @@ struct PointChoiceOptions {
 };
 
 struct ChosenPoint {
-  Eigen::Vector2f pixel;   // sub-pixel [px]
-  Eigen::Vector2f normal;  // unit: the structure tensor's stronger direction, signed from dark to bright
+  Eigen::Vector2f pixel;  // sub-pixel [px]
+  // Unit, from dark to bright: of a corner-like point the stronger direction of its structure tensor, of the others the
+  // mean normal of the edge around it.
+  Eigen::Vector2f normal;
   StructureTensor tensor;
   bool corner = false;
   int chain = -1;           // of the edge point it was made from
