@@ -97,8 +97,7 @@ std::string formatFrameTable(const RunResult& result) {
 }
 
 std::string formatKeyframes(const RunResult& result) {
-  return "# keyframe trajectory: camera to world, in map units\n# time[s] tx ty tz qx qy qz qw\n" +
-         formatTrajectory(keyframeTrajectory(result));
+  return "# keyframe trajectory: camera to world, in map units\n" + formatTrajectory(keyframeTrajectory(result));
 }
 
 void writeRunFiles(const std::string& folder, const RunResult& result, const RunDescription& description,
