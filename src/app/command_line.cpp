@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -12,9 +13,7 @@
 #include "app/check_config_command.h"
 #include "app/evaluate_command.h"
 #include "app/replay_command.h"
-#if __has_include("app/simulate_command.h")
 #include "app/simulate_command.h"
-#endif
 #include "edgeslam/input_error.h"
 
 namespace edgeslam {
@@ -28,7 +27,7 @@ int tellFailure(ExitCode code, const std::string& message) {
 // A reader that went away (`| head`) is no failure; a full disk behind the standard output is.
 bool standardOutputLost() {
   std::cout.flush();
-  if (std::cout) return false;
+  if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return false;
   struct stat status {};
   return fstat(STDOUT_FILENO, &status) != 0 || !(S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode));
 }
@@ -41,9 +40,7 @@ int parseAndRun(int argc, const char* const* argv) {
   app.footer("Exit codes: 0 done, 1 the run failed, 2 wrong use or bad input.");
   addReplayCommand(app, exit_code);
   addEvaluateCommand(app, exit_code);
-#if __has_include("app/simulate_command.h")
   addSimulateCommand(app, exit_code);
-#endif
   addCheckConfigCommand(app, exit_code);
   try {
     app.parse(argc, argv);

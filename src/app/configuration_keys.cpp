@@ -51,7 +51,7 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"points.cell", &points.cell, "px", 4, 1000, "side of a cell of the grid over which points are spread"},
       {"points.corner_share", &points.corner_share, "", 0, 1,
        "most of the points that corner-like ones may take first"},
-      {"points.tensor_window", &points.tensor_window, "px", 3, 63, "side of the structure tensor's window"},
+      {"points.tensor_window", &points.tensor_window, "px", 3, 63, "side of the structure tensor's window", 2},
       {"points.corner_ratio", &points.corner_ratio, "", 0, 1,
        "corner-like: smaller over larger eigenvalue above this ..."},
       {"points.corner_strength", &points.corner_strength, "grey^2/px^2", 0, 10000,
@@ -68,22 +68,24 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"pose.fewest", &pose.fewest, "points", 4, 1000, "with fewer measurements or inliers there is no pose"},
 
       heading("flow", "Flow: bidirectional pyramidal Lucas-Kanade, and the correspondence filters"),
-      {"flow.window", &flow.window, "px", 5, 15, "side of the patch, odd"},
+      {"flow.window", &flow.window, "px", 5, 15, "side of the patch", 2},
       {"flow.levels", &flow.levels, "", 1, 8, "levels of the image pyramid"},
       {"flow.iterations", &flow.iterations, "", 1, 100, "most steps a level"},
       {"flow.damping", &flow.damping, "grey^2/px^2", 0, 1000, "pull towards the predicted position"},
-      {"flow.forward_backward", &flow.forward_backward, "px", 0.01, 100, "largest error there and back, across the edge"},
+      {"flow.forward_backward", &flow.forward_backward, "px", 0.01, 100,
+       "largest error there and back, across the edge"},
       {"flow.least_correlation", &flow.least_correlation, "", -1, 1, "of a patch with its image in the next frame"},
       {"flow.edge_distance", &flow.edge_distance, "px", 0.1, 20, "a point farther from every edge is dropped"},
       {"flow.redundancy", &flow.redundancy, "px", 0, 20, "of two points nearer to each other the younger is dropped"},
 
       heading("refinement", "Refinement of each point against its keyframe's patch"),
       {"refinement.enabled", &refinement.enabled, "", 0, 0, "off only to measure what it gains"},
-      {"refinement.window", &refinement.window, "px", 5, 15, "side of the patch, odd"},
+      {"refinement.window", &refinement.window, "px", 5, 15, "side of the patch", 2},
       {"refinement.iterations", &refinement.iterations, "", 1, 100, "most steps"},
       {"refinement.damping", &refinement.damping, "grey^2/px^2", 0, 1000, "pull towards the flow's result"},
       {"refinement.least_correlation", &refinement.least_correlation, "", -1, 1, "below it the point is dropped"},
-      {"refinement.largest_move", &refinement.largest_move, "px", 0.1, 20, "a larger one across the edge is not believed"},
+      {"refinement.largest_move", &refinement.largest_move, "px", 0.1, 20,
+       "a larger one across the edge is not believed"},
 
       heading("edge_lock", "Points of straight edges are held at their map point along the edge"),
       {"edge_lock.enabled", &edge_lock.enabled, "", 0, 0, "off only to measure what it gains"},
@@ -93,7 +95,8 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
 
       heading("tracking", "State of tracking"),
       {"tracking.fewest_tracks", &tracking.fewest_tracks, "points", 8, 1000, "fewer do not start a map"},
-      {"tracking.restart_share", &tracking.restart_share, "", 0, 1, "of the first frame's points: fewer left, a new start"},
+      {"tracking.restart_share", &tracking.restart_share, "", 0, 1,
+       "of the first frame's points: fewer left, a new start"},
       {"tracking.outlier_frames", &tracking.outlier_frames, "frames", 1, 1000,
        "a point that misses the pose so often in a row is dropped"},
       {"tracking.least_inlier_share", &tracking.least_inlier_share, "", 0, 1,
@@ -112,27 +115,32 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       heading("initialisation", "Start of the map (P13 to P15)"),
       {"initialisation.frames_between", &initialisation.frames_between, "frames", 0, 50,
        "adjusted with the first and the current one"},
-      {"initialisation.attempt_interval", &initialisation.attempt_interval, "frames", 1, 100, "from attempt to attempt"},
+      {"initialisation.attempt_interval", &initialisation.attempt_interval, "frames", 1, 100,
+       "from attempt to attempt"},
       {"initialisation.least_displacement_px", &initialisation.least_displacement_px, "px", 0, 1000,
        "median motion of the points beyond a rotation"},
       {"initialisation.least_parallax_deg", &initialisation.least_parallax_deg, "deg", 0.01, 90,
        "median angle between the first and the current camera, seen from the points"},
-      {"initialisation.prior_sigma", &initialisation.prior_sigma, "", 0.01, 100, "of the inverse depth around its mean"},
+      {"initialisation.prior_sigma", &initialisation.prior_sigma, "", 0.01, 100,
+       "of the inverse depth around its mean"},
       {"initialisation.largest_depth_sigma", &initialisation.largest_depth_sigma, "", 0.01, 10,
        "a point counts where its depth is better known than this share"},
       {"initialisation.fewest_points", &initialisation.fewest_points, "points", 8, 10000, "that must count ..."},
       {"initialisation.point_share", &initialisation.point_share, "", 0, 1, "... or this share of those followed"},
       {"initialisation.five_point_corners", &initialisation.five_point_corners, "points", 8, 10000,
        "corner-like points from which on the five-point start is tried too"},
-      {"initialisation.least_quality", &initialisation.least_quality, "", 0, 1, "share of the edge pieces that must hold"},
+      {"initialisation.least_quality", &initialisation.least_quality, "", 0, 1,
+       "share of the edge pieces that must hold"},
       {"initialisation.neighbour_px", &quality.neighbour_px, "px", 1, 200, "farthest neighbours in an edge piece"},
       {"initialisation.straight_px", &quality.straight_px, "px", 0.1, 20, "a piece is straight within this"},
-      {"initialisation.same_depth_ratio", &quality.same_depth_ratio, "", 0, 1, "neighbours' depths agree within this share"},
+      {"initialisation.same_depth_ratio", &quality.same_depth_ratio, "", 0, 1,
+       "neighbours' depths agree within this share"},
       {"initialisation.straight_depth_ratio", &quality.straight_depth_ratio, "", 0, 1,
        "the middle of a straight piece lies on its chord within this share of the depth"},
 
       heading("new_points", "New map points (P7, P17)"),
-      {"new_points.largest_depth_sigma", &new_points.largest_depth_sigma, "", 0.01, 10, "standard deviation over depth"},
+      {"new_points.largest_depth_sigma", &new_points.largest_depth_sigma, "", 0.01, 10,
+       "standard deviation over depth"},
       {"new_points.least_parallax_deg", &new_points.least_parallax_deg, "deg", 0.01, 90, "angle between two rays"},
       {"new_points.largest_error", &new_points.largest_error, "sigma", 0.1, 100, "reprojection error in any view"},
       {"new_points.three_view_error", &new_points.three_view_error, "sigma", 0.1, 1000, "of the three-view check"},
@@ -141,7 +149,8 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       heading("adjustment", "Local bundle adjustment (P18, P19)"),
       {"adjustment.free_keyframes", &adjustment.free_keyframes, "keyframes", 2, 100, "adjusted around the new one"},
       {"adjustment.fixed_keyframes", &adjustment.fixed_keyframes, "keyframes", 1, 200, "held, to hold the others"},
-      {"adjustment.covisible_points", &adjustment.covisible_points, "points", 1, 10000, "common points of two covisible keyframes ..."},
+      {"adjustment.covisible_points", &adjustment.covisible_points, "points", 1, 10000,
+       "common points of two covisible keyframes ..."},
       {"adjustment.covisible_share", &adjustment.covisible_share, "", 0, 1, "... or this share of the most there are"},
       {"adjustment.outlier", &adjustment.outlier, "sigma", 0.1, 100, "observations with a larger error are taken out"},
       {"adjustment.largest_depth_sigma", &adjustment.largest_depth_sigma, "", 0.01, 10,
@@ -172,7 +181,8 @@ std::string valueText(const ConfigurationField& field) {
 
 std::string expectedValue(const ConfigurationKey& key) {
   if (std::holds_alternative<bool*>(key.field)) return "true or false";
-  return numberText(key.least) + " to " + numberText(key.largest) + (key.unit.empty() ? "" : " " + key.unit);
+  return numberText(key.least) + " to " + numberText(key.largest) + (key.unit.empty() ? "" : " " + key.unit) +
+         (key.step > 1 ? " in steps of " + std::to_string(key.step) : "");
 }
 
 bool parseNumber(const std::string& text, double& value) {
@@ -196,6 +206,7 @@ std::string setValue(const ConfigurationKey& key, const std::string& text) {
   const auto* count = std::get_if<int*>(&key.field);
   if (count && value != std::floor(value)) return "'" + text + "' is not a whole number";
   if (value < key.least || value > key.largest) return text + " is out of range";
+  if (count && std::fmod(value - key.least, key.step) != 0) return text + " is between the steps";
   if (count) {
     **count = static_cast<int>(value);
   } else if (const auto* number = std::get_if<double*>(&key.field)) {

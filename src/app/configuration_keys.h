@@ -21,6 +21,7 @@ struct ConfigurationKey {
   double least = 0;  // both bounds are allowed values; without meaning for a bool
   double largest = 0;
   std::string documentation;
+  int step = 1;  // of a whole number: least, least + step, ...
 
   bool isHeading() const { return std::holds_alternative<std::monostate>(field); }
 };
@@ -28,7 +29,7 @@ struct ConfigurationKey {
 // The keys in the order of the file, each pointing into `settings`, which must outlive them.
 std::vector<ConfigurationKey> configurationKeys(Settings& settings);
 
-// "0.3 to 10 px", "true or false".
+// "0.3 to 10 px", "true or false", "3 to 63 px in steps of 2".
 std::string expectedValue(const ConfigurationKey& key);
 
 // The field's value as YAML, in the fewest digits that read back as the same number.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/command_line.h"
-#include "unit/app/temporary_folder.h"
+#include "unit/dataset/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/configuration.h"
-#include "unit/app/temporary_folder.h"
+#include "unit/dataset/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

@@ -82,6 +82,16 @@ TEST(ConfigurationKeys, BoundsAreAllowedAndWhatIsBeyondIsNot) {
   EXPECT_EQ(expectedValue(key), "1.5 to 3 px");
 }
 
+TEST(ConfigurationKeys, WhatMustBeOddIs) {
+  int side = 5;
+  const ConfigurationKey key{"a.b", &side, "px", 3, 63, "test", 2};
+  EXPECT_NE(setValue(key, "8"), "");
+  EXPECT_EQ(side, 5);
+  EXPECT_EQ(setValue(key, "9"), "");
+  EXPECT_EQ(side, 9);
+  EXPECT_EQ(expectedValue(key), "3 to 63 px in steps of 2");
+}
+
 TEST(ConfigurationKeys, WholeNumbersAndTruthValuesTakeNothingElse) {
   int count = 5;
   const ConfigurationKey whole{"a.b", &count, "", 0, std::numeric_limits<int>::max(), "test"};

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "unit/app/temporary_folder.h"
+#include "unit/dataset/temporary_folder.h"
 
 namespace edgeslam {
 namespace {
