@@ -31,7 +31,8 @@ int octant(const Eigen::Vector2f& direction) {
   const int dx = x > kTanOfEighth * y ? sign_x : 0;
   const int dy = y > kTanOfEighth * x ? sign_y : 0;
   constexpr std::array<int, 9> kOctants = {5, 6, 7, 4, 0, 0, 3, 2, 1};
-  return kOctants[static_cast<size_t>(3 * (dy + 1) + dx + 1)];
+  const int entry = 3 * (dy + 1) + dx + 1;
+  return kOctants[static_cast<size_t>(entry)];
 }
 
 // The best continuation of the point in pixel `cell` among the three pixels ahead in `direction`, or -1.

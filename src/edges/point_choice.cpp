@@ -96,14 +96,16 @@ class Grid {
  public:
   Grid(const cv::Size& size, int side)
       : side_(std::max(side, 1)), columns_((size.width - 1) / side_ + 1), rows_((size.height - 1) / side_ + 1) {
-    cells_.resize(static_cast<size_t>(columns_ * rows_));
+    const int count = columns_ * rows_;
+    cells_.resize(static_cast<size_t>(count));
   }
 
   Cell& at(const Eigen::Vector2f& pixel) {
     const auto side = static_cast<float>(side_);
     const auto column = static_cast<int>(std::clamp(pixel.x() / side, 0.0F, static_cast<float>(columns_ - 1)));
     const auto row = static_cast<int>(std::clamp(pixel.y() / side, 0.0F, static_cast<float>(rows_ - 1)));
-    return cells_[static_cast<size_t>(row * columns_ + column)];
+    const int index = row * columns_ + column;
+    return cells_[static_cast<size_t>(index)];
   }
 
   std::vector<Cell>& cells() { return cells_; }

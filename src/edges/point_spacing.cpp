@@ -19,11 +19,16 @@ cv::Point PointSpacing::bucketOf(const Eigen::Vector2f& pixel) const {
   return {static_cast<int>(x), static_cast<int>(y)};
 }
 
+size_t PointSpacing::indexOf(int column, int row) const {
+  const int index = row * grid_.width + column;
+  return static_cast<size_t>(index);
+}
+
 bool PointSpacing::isFree(const Eigen::Vector2f& pixel) const {
   const cv::Point bucket = bucketOf(pixel);
   for (int row = std::max(bucket.y - 1, 0); row <= std::min(bucket.y + 1, grid_.height - 1); ++row) {
     for (int column = std::max(bucket.x - 1, 0); column <= std::min(bucket.x + 1, grid_.width - 1); ++column) {
-      for (const Eigen::Vector2f& point : buckets_[static_cast<size_t>(row * grid_.width + column)]) {
+      for (const Eigen::Vector2f& point : buckets_[indexOf(column, row)]) {
         if ((point - pixel).squaredNorm() < squared_distance_) return false;
       }
     }
@@ -34,7 +39,7 @@ bool PointSpacing::isFree(const Eigen::Vector2f& pixel) const {
 void PointSpacing::add(const Eigen::Vector2f& pixel) {
   if (!pixel.allFinite()) return;
   const cv::Point bucket = bucketOf(pixel);
-  buckets_[static_cast<size_t>(bucket.y * grid_.width + bucket.x)].push_back(pixel);
+  buckets_[indexOf(bucket.x, bucket.y)].push_back(pixel);
 }
 
 }  // namespace edgeslam

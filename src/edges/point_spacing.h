@@ -17,6 +17,7 @@ class PointSpacing {
 
  private:
   cv::Point bucketOf(const Eigen::Vector2f& pixel) const;
+  size_t indexOf(int column, int row) const;
 
   float squared_distance_;
   float side_;  // of a bucket, at least the distance [px]

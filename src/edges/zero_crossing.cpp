@@ -35,7 +35,8 @@ struct WindowSums {
 template <int radius, typename Sums>
 float slopeOf(const Sums& sums) {
   int moment = 0;
-  for (int i = -radius; i <= radius; ++i) moment += i * sums[static_cast<size_t>(i + radius)];
+  int coordinate = -radius;
+  for (const int sum : sums) moment += coordinate++ * sum;
   return static_cast<float>(moment);
 }
 
@@ -80,6 +81,12 @@ bool isEdgeLike(const cv::Mat& dog, int x, int y, const Eigen::Vector2f& normal,
       return isEdgeLikeWithin<2>(dog, x, y, normal, sign_balance);
     case 3:
       return isEdgeLikeWithin<3>(dog, x, y, normal, sign_balance);
+    case 4:
+      return isEdgeLikeWithin<4>(dog, x, y, normal, sign_balance);
+    case 5:
+      return isEdgeLikeWithin<5>(dog, x, y, normal, sign_balance);
+    case 6:
+      return isEdgeLikeWithin<6>(dog, x, y, normal, sign_balance);
     case kLargestFitRadius:
       return isEdgeLikeWithin<kLargestFitRadius>(dog, x, y, normal, sign_balance);
     default:

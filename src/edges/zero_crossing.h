@@ -8,7 +8,7 @@
 
 namespace edgeslam {
 
-constexpr int kLargestFitRadius = 4;  // [px]
+constexpr int kLargestFitRadius = 7;  // [px]
 
 // Offset of the zero line of `dog` (CV_16S) from the centre of pixel (x, y) along its row (`along_row`) or column,
 // within

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "edges/zero_crossing.h"
 #include "unit/edges/synthetic_image.h"
 
 namespace edgeslam {
@@ -172,6 +173,27 @@ TEST(EdgeDetection, TakesImagesOfAnySize) {
     const EdgeMap edges = detectEdges(renderLine(size, lineThrough(size.width / 2.0, size.height / 2.0, 0)), {});
     EXPECT_EQ(edges.index.size(), size);
     EXPECT_EQ(edges.chain_count > 0, size.width > 30 && size.height > 20) << size;
+  }
+}
+
+TEST(EdgeDetection, WorksWithAllOptionsThatMayBeSet) {
+  const cv::Mat image = renderTexture(cv::Size(160, 120), 6);
+  for (const double sigma : {0.3, 1.0, 3.0, 10.0}) {
+    for (const double ratio : {1.05, 1.6, 4.0}) {
+      for (int radius = 1; radius <= kLargestFitRadius; ++radius) {
+        EdgeOptions options;
+        options.sigma = sigma;
+        options.sigma_ratio = ratio;
+        options.plane_fit_radius = radius;
+        options.gradient_threshold = 0;
+        const EdgeMap edges = detectEdges(image, options);
+        // A window far wider or narrower than the Gaussians tells no edges.
+        if (radius == 2 && sigma >= 1 && sigma <= 3) {
+          EXPECT_GT(edges.points.size(), 100U) << sigma << " " << ratio;
+        }
+        for (const EdgePoint& point : edges.points) ASSERT_TRUE(point.pixel.allFinite() && point.normal.allFinite());
+      }
+    }
   }
 }
 
