@@ -7,7 +7,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kTargetMean = 0.43;  // of full scale
+constexpr double kTargetMean = 0.49;  // of full scale
 constexpr double kExposureLag_s = 0.8;
 constexpr double kDarkestMean = 0.25;  // of the first frame's: the gain does not follow the light below this
 

@@ -8,7 +8,7 @@
 namespace edgeslam {
 
 struct SensorOptions {
-  double noise = 2.5;        // standard deviation at grey 128 [grey]: half its variance is read noise, half shot noise
+  double noise = 2.0;        // standard deviation at grey 128 [grey]: half its variance is read noise, half shot noise
   double vignetting = 0.25;  // light lost in the image's corners
 };
 

@@ -26,10 +26,8 @@ Scene makePanels(bool posters, std::uint64_t seed) {
   scene.ambient = 0.40;
   addRoomShell(scene, {-4.2, -4.6, 0}, {4.2, 2.0, 3.1}, 0.55, 0.35, 0.5);
   if (posters) scene.rectangles.front().texture = addTexture(scene, drawCarpet(2048, 2048, 0.05, seed + 1));
-  addCeilingLamp(scene, {-2.6, -1.9, 3.1}, 1.3, 0.5, 10.0);
-  addCeilingLamp(scene, {2.2, -2.8, 3.1}, 1.3, 0.5, 3.5);
-  // Behind the panels, out of sight.
-  for (const double x : {-2.0, 0.0, 2.0}) scene.lights.push_back({Vector3d(x, 1.2, 3.0), -Vector3d::UnitZ(), 1.2});
+  addCeilingLamp(scene, {-3.4, -2.2, 3.1}, 1.2, 0.5, 15);
+  addCeilingLamp(scene, {2.0, -3.6, 3.1}, 1.2, 0.5, 3);
 
   // Folds, left to right; uneven, as panels set up by hand are.
   const std::vector<std::pair<double, double>> folds = {{-3.32, 0.42}, {-2.36, -0.26}, {-1.43, 0.45}, {-0.52, -0.22},
@@ -40,6 +38,14 @@ Scene makePanels(bool posters, std::uint64_t seed) {
     const double length = (right - left).norm() - 2 * gap;
     const Vector3d back = thickness * Vector3d::UnitZ().cross(along);
     addBox(scene, left + gap * along, length * along, back, height * Vector3d::UnitZ(), 0.80);
+    // Something dark behind the gap.
+    SceneRectangle strip;
+    strip.corner = right + Vector3d(-0.012, 0.025, 0);
+    strip.side_s = 0.024 * Vector3d::UnitX();
+    strip.side_t = height * Vector3d::UnitZ();
+    strip.albedo = 0.08;
+    strip.casts_shadow = false;
+    scene.rectangles.push_back(strip);
     if (!posters) continue;
     const SceneWall panel{left + gap * along, along, length};
     const std::uint64_t poster_seed = seed * 1000 + 10 * i;

@@ -13,8 +13,9 @@ using Eigen::Vector3d;
 constexpr double kNodeSpacing_m = 0.08;
 constexpr int kMostNodes = 96;
 constexpr double kOcclusionReach_m = 0.8;  // a surface this far away takes no even light any more
-constexpr double kLampReach_m = 6.0;
+constexpr double kLampReach_m = 8.0;
 constexpr int kOcclusionRays = 24;
+constexpr double kEnclosed = 0.08;  // a node that gets less of the even light lies inside something
 
 struct Occluder {
   Vector3d corner, normal, s, t;  // s and t divided by their squared lengths
@@ -52,15 +53,22 @@ std::array<Vector3d, kOcclusionRays> cosineDirections() {
   return directions;
 }
 
-double irradiance(const Scene& scene, const std::vector<Occluder>& occluders, const Vector3d& point,
-                  const Vector3d& normal, const std::array<Vector3d, kOcclusionRays>& directions) {
+// Share of the even light that reaches the point.
+double openness(const std::vector<Occluder>& occluders, const Vector3d& point,
+                const std::array<Vector3d, kOcclusionRays>& directions) {
   double open = 0;
   for (const Vector3d& direction : directions) {
     double distance = kOcclusionReach_m;
     for (const Occluder& occluder : occluders) distance = hitDistance(occluder, point, direction, distance);
     open += distance / kOcclusionReach_m;
   }
-  double sum = scene.ambient * open / kOcclusionRays;
+  return open / kOcclusionRays;
+}
+
+// Irradiance of the lamps.
+double lampLight(const Scene& scene, const std::vector<Occluder>& occluders, const Vector3d& point,
+                 const Vector3d& normal) {
+  double sum = 0;
   for (const PointLight& light : scene.lights) {
     const Vector3d offset = light.position - point;
     const double distance = offset.norm(), cosine = normal.dot(offset) / distance;
@@ -74,6 +82,26 @@ double irradiance(const Scene& scene, const std::vector<Occluder>& occluders, co
     if (lit) sum += light.intensity * lamp_cosine * cosine * fade / (distance * distance);
   }
   return sum;
+}
+
+// Nodes inside a thing that stands on the surface are set to the mean of their neighbours outside, since the light
+// between nodes is interpolated.
+void fillEnclosedNodes(cv::Mat& map, const cv::Mat& enclosed) {
+  const cv::Mat known = map.clone();
+  for (int row = 0; row < map.rows; ++row) {
+    for (int column = 0; column < map.cols; ++column) {
+      if (!enclosed.at<unsigned char>(row, column)) continue;
+      float sum = 0, count = 0;
+      for (int y = std::max(0, row - 2); y <= std::min(map.rows - 1, row + 2); ++y) {
+        for (int x = std::max(0, column - 2); x <= std::min(map.cols - 1, column + 2); ++x) {
+          if (enclosed.at<unsigned char>(y, x)) continue;
+          sum += known.at<float>(y, x);
+          count += 1;
+        }
+      }
+      if (count > 0) map.at<float>(row, column) = sum / count;
+    }
+  }
 }
 
 }  // namespace
@@ -97,15 +125,20 @@ std::vector<cv::Mat> computeLight(const Scene& scene) {
       return std::clamp(static_cast<int>(std::ceil(length / kNodeSpacing_m)) + 1, 2, kMostNodes);
     };
     cv::Mat map(nodes(r.side_t.norm()), nodes(r.side_s.norm()), CV_32F);
+    cv::Mat enclosed(map.size(), CV_8U);
     for (int row = 0; row < map.rows; ++row) {
       for (int column = 0; column < map.cols; ++column) {
         // A little inside the rectangle and before it, so that neighbours do not hide the node.
         const double s = std::clamp(column / (map.cols - 1.0), 0.002, 0.998);
         const double t = std::clamp(row / (map.rows - 1.0), 0.002, 0.998);
         const Vector3d point = r.corner + s * r.side_s + t * r.side_t + 0.006 * normal;
-        map.at<float>(row, column) = static_cast<float>(irradiance(scene, occluders, point, normal, directions));
+        const double open = openness(occluders, point, directions);
+        enclosed.at<unsigned char>(row, column) = open < kEnclosed ? 1 : 0;
+        map.at<float>(row, column) =
+            static_cast<float>(scene.ambient * open + lampLight(scene, occluders, point, normal));
       }
     }
+    fillEnclosedNodes(map, enclosed);
     maps.push_back(map);
   }
   return maps;

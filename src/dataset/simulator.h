@@ -35,7 +35,7 @@ struct SimulationOptions {
   int height = 480;                 // [px]
   bool fisheye = false;             // Kannala-Brandt in place of pinhole with radial-tangential distortion
   double exposure_ms = 8;           // 0: no motion blur
-  double noise = 2.5;               // standard deviation at grey 128 [grey]
+  double noise = 2.0;               // standard deviation at grey 128 [grey]
   double speed = 1;                 // of the camera on its path, 1: the scene's usual speed
   std::vector<FrameRange> covered;  // a hand on the lens
   std::vector<FrameRange> shaken;   // shaken violently
