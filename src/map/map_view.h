@@ -39,7 +39,7 @@ inline Eigen::Vector3d worldPosition(const MapView& view, const ViewPoint& point
 
 // Standard deviation of the inverse depths of a flat start, whose mean is 1: small, since it is their common depth that keeps
 // rotation and translation apart where a scene has lines only.
-constexpr double flat_start_sigma = 0.0;
+constexpr double flat_start_sigma = 0.05;
 
 // A provisional map: every point of the first frame at the distance 1 (design, section 5: initialisation).
 MapView flatView(const TrackedFrame& first);

@@ -116,7 +116,9 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
   clock.finished("refinement");
   estimate = estimatePose(camera_, view_, frame.tracks, estimate.result.world_T_camera, options_.pose);
   const auto in_view = static_cast<double>(estimate.track_of_observation.size());
-  if (!estimate.result.converged || estimate.result.inlier_count < options_.least_inlier_share * in_view) return false;
+  // A flat map fits a scene with depth only here and there: before the map stands no share of inliers is asked for.
+  const double fewest_inliers = view_.initialised ? options_.least_inlier_share * in_view : 0.0;
+  if (!estimate.result.converged || estimate.result.inlier_count < fewest_inliers) return false;
   frame.pose = estimate.result;
   frame.world_T_camera = estimate.result.world_T_camera;
 
