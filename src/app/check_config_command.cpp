@@ -27,7 +27,9 @@ void listDifferences(const Configuration& configuration) {
   std::string changes;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::string value = valueText(keys[i].field), usual = valueText(default_keys[i].field);
-    if (value != usual) changes += "  " + keys[i].path + ": " + value + " (default " + usual + ")\n";
+    if (value == usual) continue;
+    changes.append("  ").append(keys[i].path).append(": ").append(value);
+    changes.append(" (default ").append(usual).append(")\n");
   }
   std::cout << configuration.source << ": a good configuration; "
             << (changes.empty() ? "all settings are the defaults" : "what differs from the defaults:") << "\n"

@@ -8,7 +8,7 @@ import re
 import sys
 import tempfile
 
-ORDER = ["image", "geometry", "edges", "flow", "map", "adjustment", "tracking", "mapping", "pipeline", "dataset", "app"]
+ORDER = ["image", "geometry", "edges", "flow", "map", "adjustment", "tracking", "mapping", "places", "pipeline", "dataset", "app"]
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/]+)/')
 
 
