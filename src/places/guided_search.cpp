@@ -1,0 +1,243 @@
+#include "places/guided_search.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "tracking/measurement_accuracy.h"
+
+namespace edgeslam {
+namespace {
+
+// One round: how far is searched, and how much the accuracy that is asked of what was found is widened.
+struct Round {
+  double radius = 0;  // [px]
+  int coarsest_level = 0;
+  double widening = 1;
+};
+
+struct RoundResult {
+  PoseResult pose;
+  int visible = 0;
+  int visible_corners = 0;
+  std::vector<MatchedPoint> matches;  // as pose.inliers
+  std::vector<double> distances;      // of the matches' points from the camera
+};
+
+// Where a point of uncertain depth may be in the image (design, section 5: its depth's variance is kept and used).
+void addDepthUncertainty(const Camera& camera, const Map& map, const MapPoint& point, const Pose& camera_T_world,
+                         PoseObservation& observation) {
+  const Pose camera_T_host = camera_T_world * map.keyframes[static_cast<std::size_t>(point.host)].world_T_camera;
+  const Eigen::Vector3d scaled =
+      camera_T_host.rotation * point.host_bearing + point.inverse_depth * camera_T_host.translation;
+  if (!(scaled.z() > 1e-3)) return;
+  Eigen::Matrix<double, 2, 3> jacobian;
+  project(camera, scaled, &jacobian);
+  const Eigen::Vector2d motion = jacobian * camera_T_host.translation;  // d pixel / d inverse depth
+  const double length = motion.norm();
+  if (!(length > 1e-9)) return;
+  observation.depth_sigma_px = length * point.inverse_depth_sigma;
+  observation.depth_direction = motion / length;
+}
+
+// At most `count` of the points, corners before edges, evenly from the list.
+std::vector<VisiblePoint> thinOut(const std::vector<SearchPoint>& points, const std::vector<VisiblePoint>& visible,
+                                  int count) {
+  if (static_cast<int>(visible.size()) <= count) return visible;
+  std::vector<VisiblePoint> corners, others, chosen;
+  for (const VisiblePoint& candidate : visible)
+    (points[candidate.index].corner ? corners : others).push_back(candidate);
+  const auto takeEvenly = [&](const std::vector<VisiblePoint>& from, std::size_t wanted) {
+    wanted = std::min(wanted, from.size());
+    for (std::size_t i = 0; i < wanted; ++i) chosen.push_back(from[i * from.size() / wanted]);
+  };
+  takeEvenly(corners, static_cast<std::size_t>(count) / 2);
+  takeEvenly(others, static_cast<std::size_t>(count) - chosen.size());
+  return chosen;
+}
+
+Track accuracyAt(const cv::Mat& grey, const PointChoiceOptions& options, const FoundPoint& found) {
+  Track track;
+  track.pixel = found.pixel;
+  track.normal = found.normal;
+  updateAccuracy(grey, options, track);
+  return track;
+}
+
+RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<PointId>& ids,
+                       const FrameImages& current, const EdgeMap& edges, const Pose& start,
+                       const GuidedSearchOptions& options, const Round& round, int most_points) {
+  MapSearchOptions search = options.search;
+  search.radius = round.radius;
+  search.coarsest_level = round.coarsest_level;
+  std::vector<KeyframeId> keyframes;
+  const std::vector<SearchPoint> points = searchPoints(map, ids, start, keyframes);
+  const std::vector<VisiblePoint> visible = thinOut(points, visiblePoints(camera, points, start, search), most_points);
+
+  RoundResult result;
+  result.visible = static_cast<int>(visible.size());
+  for (const VisiblePoint& candidate : visible) result.visible_corners += points[candidate.index].corner ? 1 : 0;
+  const Pose camera_T_world = start.inverse();
+  std::vector<PoseObservation> observations;
+  for (const FoundPoint& found : findVisiblePoints(points, visible, current, edges, search)) {
+    const SearchPoint& point = points[found.index];
+    const Track seen = accuracyAt(current.pyramid.levels[0], options.accuracy, found);
+    // A corner must be one in both images to count as one.
+    const bool corner = point.corner && seen.corner;
+    PoseObservation observation;
+    observation.point = point.position;
+    observation.measurement = corner ? measurementOf(point, found) : measurementOf(seen);
+    if (!corner) {
+      observation.measurement.sigma_normal = options.accuracy.sigma_edge;
+      observation.measurement.sigma_tangent = std::max<double>(seen.sigma_tangent, point.sigma_tangent);
+    }
+    result.matches.push_back({point.id, observation.measurement, point.corner, keyframes[found.index]});
+    result.distances.push_back((point.position - start.translation).norm());
+    observation.measurement.sigma_normal *= round.widening;
+    observation.measurement.sigma_tangent *= round.widening;
+    addDepthUncertainty(camera, map, map.points.at(point.id), camera_T_world, observation);
+    observations.push_back(observation);
+  }
+  result.pose = adjustPose(camera, start, observations, options.pose);
+  return result;
+}
+
+int cellsCovered(const Camera& camera, const std::vector<MatchedPoint>& matches) {
+  std::set<int> cells;
+  for (const MatchedPoint& match : matches) {
+    const auto column = static_cast<int>(4 * match.measurement.pixel.x() / camera.width);
+    const auto row = static_cast<int>(4 * match.measurement.pixel.y() / camera.height);
+    cells.insert(4 * std::clamp(row, 0, 3) + std::clamp(column, 0, 3));
+  }
+  return static_cast<int>(cells.size());
+}
+
+double largestSigma(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]));
+}
+
+std::string of(int count, int all, const char* what) {
+  return std::to_string(count) + " of " + std::to_string(all) + " " + what;
+}
+
+// Empty where the pose can be trusted.
+std::string reasonToRefuse(const Camera& camera, const RoundResult& last, const std::vector<MatchedPoint>& inliers,
+                           double median_distance, const GuidedSearchOptions& options) {
+  const auto count = static_cast<int>(inliers.size());
+  if (count < std::max<double>(options.fewest_inliers, options.inlier_share * last.visible)) {
+    return of(count, last.visible, "points in view agree");
+  }
+  const auto corners =
+      static_cast<int>(std::count_if(inliers.begin(), inliers.end(), [](const auto& m) { return m.corner; }));
+  if (last.visible_corners >= options.fewest_corners && corners < options.corner_share * last.visible_corners) {
+    return of(corners, last.visible_corners, "corners in view agree");
+  }
+  if (cellsCovered(camera, inliers) < options.fewest_cells) return "what agrees covers too little of the image";
+  const double position_sigma = largestSigma(last.pose.covariance.topLeftCorner<3, 3>()) / median_distance;
+  if (!(position_sigma < options.position_sigma)) return "what agrees leaves the position undetermined";
+  const double rotation_sigma_deg = largestSigma(last.pose.covariance.bottomRightCorner<3, 3>()) * 180 / M_PI;
+  if (!(rotation_sigma_deg < options.rotation_sigma_deg)) return "what agrees leaves the rotation undetermined";
+  return "";
+}
+
+}  // namespace
+
+std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neighbours) {
+  const std::vector<int> shared = sharedPoints(map, keyframe);
+  std::vector<KeyframeId> order;
+  for (KeyframeId k = 0; k < static_cast<KeyframeId>(shared.size()); ++k) {
+    if (shared[static_cast<std::size_t>(k)] > 0) order.push_back(k);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](KeyframeId a, KeyframeId b) {
+    return shared[static_cast<std::size_t>(a)] > shared[static_cast<std::size_t>(b)];
+  });
+  if (static_cast<int>(order.size()) > neighbours) order.resize(static_cast<std::size_t>(neighbours));
+  order.push_back(keyframe);
+  std::vector<PointId> points;
+  for (const KeyframeId k : order) {
+    for (const PointObservation& observation : map.keyframes[static_cast<std::size_t>(k)].observations) {
+      if (map.points.count(observation.point) > 0) points.push_back(observation.point);
+    }
+  }
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+std::vector<SearchPoint> searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
+                                      std::vector<KeyframeId>& keyframes) {
+  std::vector<SearchPoint> result;
+  keyframes.clear();
+  for (const PointId id : points) {
+    const MapPoint& point = map.points.at(id);
+    const Eigen::Vector3d position = worldPosition(map, point);
+    const Eigen::Vector3d ray = position - world_T_camera.translation;
+    const Keyframe* nearest = nullptr;
+    double least_difference = std::numeric_limits<double>::max();
+    const auto consider = [&](KeyframeId k) {
+      const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(k)];
+      if (!keyframe.images) return;
+      const Eigen::Vector3d its_ray = position - keyframe.world_T_camera.translation;
+      const double difference = (ray - its_ray).norm();
+      if (difference >= least_difference) return;
+      least_difference = difference;
+      nearest = &keyframe;
+    };
+    consider(point.host);
+    for (const KeyframeId k : point.seen_in) consider(k);
+    const PointObservation* seen = nearest ? findObservation(*nearest, id) : nullptr;
+    if (!seen) continue;
+    const Measurement& m = seen->measurement;
+    result.push_back({id, position, nearest->images, nearest->world_T_camera, m.pixel.cast<float>(),
+                      m.normal.cast<float>(), seen->corner, static_cast<float>(m.sigma_normal),
+                      static_cast<float>(m.sigma_tangent)});
+    keyframes.push_back(nearest->id);
+  }
+  return result;
+}
+
+GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std::vector<PointId>& points,
+                                const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
+                                const GuidedSearchOptions& options) {
+  const int all = static_cast<int>(points.size());
+  const Round screening{options.screening_radius, 2, 6};
+  const Round rounds[] = {{2 * options.search.radius, 1, 3}, {options.search.radius, options.search.coarsest_level, 1}};
+
+  GuidedSearchResult result;
+  RoundResult last =
+      searchOnce(camera, map, points, current, edges, world_T_camera, options, screening, options.screened_points);
+  result.visible = last.visible;
+  // Screening asks for half of what is asked in the end.
+  const auto few = [&] {
+    return !last.pose.converged || last.pose.inlier_count < 0.5 * options.inlier_share * last.visible;
+  };
+  for (const Round& round : rounds) {
+    if (few()) {
+      result.reason =
+          of(last.pose.converged ? last.pose.inlier_count : 0, last.visible, "points in view agree roughly");
+      return result;
+    }
+    last = searchOnce(camera, map, points, current, edges, last.pose.world_T_camera, options, round, all);
+  }
+  result.pose = last.pose;
+  result.visible = last.visible;
+  if (!last.pose.converged) {
+    result.reason = "what was found in the frame gives no pose";
+    return result;
+  }
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < last.matches.size(); ++i) {
+    if (!last.pose.inliers[i]) continue;
+    result.inliers.push_back(last.matches[i]);
+    distances.push_back(last.distances[i]);
+  }
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  result.reason = reasonToRefuse(camera, last, result.inliers, *middle, options);
+  result.accepted = result.reason.empty();
+  return result;
+}
+
+}  // namespace edgeslam

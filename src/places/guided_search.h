@@ -1,0 +1,61 @@
+// P22, second half: from a rough pose the map's points around a keyframe are projected into the frame and searched for,
+// the pose is adjusted to what was found, and so on with a shrinking search. Accepted is only what the map explains as
+// a whole: a wrong pose taken for good is worse than none.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adjustment/pose_adjustment.h"
+#include "edges/edge_detection.h"
+#include "edges/point_choice.h"
+#include "map/map.h"
+#include "tracking/map_search.h"
+
+namespace edgeslam {
+
+struct GuidedSearchOptions {
+  MapSearchOptions search;  // of the last round; the first ones search farther
+  PoseOptions pose;
+  PointChoiceOptions accuracy;   // how the found points' accuracy is told
+  int screened_points = 160;     // searched for in the first round
+  double screening_radius = 20;  // [px]
+  int neighbours = 6;            // covisible keyframes whose points are searched for too
+  int fewest_inliers = 30;
+  double inlier_share = 0.5;      // of the points that should be visible
+  double corner_share = 0.4;      // likewise of the corners, where there are some ...
+  int fewest_corners = 8;         // ... that is, so many
+  int fewest_cells = 5;           // of a grid of 4 x 4 over the image that inliers lie in
+  double position_sigma = 0.02;   // largest standard deviation of the position, share of the points' median distance
+  double rotation_sigma_deg = 1;  // and of the rotation
+};
+
+// A map point found in the frame.
+struct MatchedPoint {
+  PointId point = 0;
+  Measurement measurement;
+  bool corner = false;
+  KeyframeId keyframe = -1;  // whose patch it was found by
+};
+
+struct GuidedSearchResult {
+  bool accepted = false;
+  std::string reason;  // why not
+  PoseResult pose;
+  int visible = 0;  // points that should be in view, in the last round
+  std::vector<MatchedPoint> inliers;
+};
+
+// The map points that a keyframe and its best covisible ones see, ascending.
+std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neighbours);
+
+// The points with, of each, the keyframe that saw it most nearly from where `world_T_camera` does. `keyframes` gets
+// these, one a point.
+std::vector<SearchPoint> searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
+                                      std::vector<KeyframeId>& keyframes);
+
+GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std::vector<PointId>& points,
+                                const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
+                                const GuidedSearchOptions& options);
+
+}  // namespace edgeslam

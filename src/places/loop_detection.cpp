@@ -1,0 +1,62 @@
+#include "places/loop_detection.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace edgeslam {
+namespace {
+
+const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[static_cast<std::size_t>(id)]; }
+
+// P24: the lowest score among the keyframes before the current one that look about the same way.
+double barOf(const Map& map, KeyframeId current, const std::vector<double>& scores,
+             const LoopDetectionOptions& options) {
+  double bar = 1;
+  int counted = 0;
+  for (KeyframeId k = current - 1; k >= 0 && counted < options.bar_keyframes; --k) {
+    if (scores[static_cast<std::size_t>(k)] == kNoScore) continue;
+    const double angle =
+        rotationAngle(keyframeOf(map, current).world_T_camera.rotation, keyframeOf(map, k).world_T_camera.rotation);
+    if (angle * 180.0 / M_PI >= options.bar_rotation_deg) continue;
+    bar = std::min(bar, scores[static_cast<std::size_t>(k)]);
+    ++counted;
+  }
+  return bar;
+}
+
+}  // namespace
+
+LoopDetection detectLoops(const Map& map, KeyframeId current, const std::vector<double>& scores,
+                          const LoopDetectionOptions& options) {
+  LoopDetection detection;
+  detection.bar = barOf(map, current, scores, options);
+  const std::vector<int> shared = sharedPoints(map, current);
+
+  std::vector<LoopCandidate> run;  // consecutive keyframes over the bar
+  const auto endRun = [&] {
+    for (std::size_t i = 0; i < run.size() && static_cast<int>(run.size()) >= options.consecutive; ++i) {
+      const bool best =
+          (i == 0 || run[i].score > run[i - 1].score) && (i + 1 == run.size() || run[i].score >= run[i + 1].score);
+      if (best) detection.candidates.push_back(run[i]);
+    }
+    run.clear();
+  };
+  for (KeyframeId k = 0; k < current - options.recent_keyframes; ++k) {
+    const double score = scores[static_cast<std::size_t>(k)];
+    if (score == kNoScore) continue;
+    if (score > detection.bar && shared[static_cast<std::size_t>(k)] == 0) {
+      run.push_back({k, score});
+    } else {
+      endRun();
+    }
+  }
+  endRun();
+  std::stable_sort(detection.candidates.begin(), detection.candidates.end(),
+                   [](const LoopCandidate& a, const LoopCandidate& b) { return a.score > b.score; });
+  if (static_cast<int>(detection.candidates.size()) > options.most_candidates) {
+    detection.candidates.resize(static_cast<std::size_t>(options.most_candidates));
+  }
+  return detection;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,72 @@
+// P22: where track-loss recovery fails, the camera is found again against the whole map: keyframes that look like the
+// frame, a rough pose from each, a guided search from there.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "places/guided_search.h"
+#include "places/keyframe_matching.h"
+#include "places/thumbnail.h"
+
+namespace edgeslam {
+
+struct RelocalisationOptions {
+  GuidedSearchOptions guided_search;
+  KeyframeMatchingOptions matching;
+  PointChoiceOptions points;       // of the frame, to be matched with the keyframes'
+  int candidates = 5;              // keyframes tried in one frame
+  int matched_candidates = 3;      // of these, matched by descriptors too
+  int compared_turned = 12;        // keyframes of which thumbnails are compared at turns too
+  double least_correlation = 0.3;  // of the thumbnails, for a candidate
+  int fewest_matches = 8;          // of descriptors, and of these in agreement, for a pose from them
+  double descriptor_error = 5;     // reprojection error within which a match agrees [px]
+  int ransac_iterations = 150;
+};
+
+struct RelocalisationResult {
+  bool found = false;
+  std::string reason;  // why not: of the keyframe that came nearest to it
+  Pose world_T_camera;
+  PoseResult pose;                    // covariance; inliers by match before outliers were taken out
+  KeyframeId keyframe = -1;           // the candidate that led there
+  std::vector<MatchedPoint> matches;  // the map points that agree with the pose
+  int visible = 0;                    // map points around the keyframe that should be in view
+};
+
+// Keeps what relocalisation needs of each keyframe.
+class Relocalisation {
+ public:
+  Relocalisation(const Camera& camera, const RelocalisationOptions& options) : camera_(camera), options_(options) {}
+
+  // A keyframe without images is passed over; one already known is taken anew.
+  void addKeyframe(const Keyframe& keyframe);
+  void removeKeyframe(KeyframeId id) { keyframes_.erase(id); }
+  void clear() { keyframes_.clear(); }
+
+  // The pose of a frame of which nothing is known. `map`'s keyframes are those added, where they are now. Same input,
+  // same result.
+  RelocalisationResult relocalise(const Map& map, const FrameImages& current, const EdgeMap& edges) const;
+
+ private:
+  struct KnownKeyframe {
+    Thumbnail thumbnail;
+    std::vector<PointId> points;  // those described, in the order of `described.points`
+    DescribedPoints described;
+  };
+  struct Candidate {
+    KeyframeId keyframe = -1;
+    ThumbnailMatch match;
+  };
+
+  std::vector<Candidate> candidates(const Map& map, const Thumbnail& thumbnail) const;
+  std::optional<Pose> poseByDescriptors(const Map& map, KeyframeId keyframe, const DescribedPoints& frame) const;
+
+  Camera camera_;
+  RelocalisationOptions options_;
+  std::map<KeyframeId, KnownKeyframe> keyframes_;
+};
+
+}  // namespace edgeslam
