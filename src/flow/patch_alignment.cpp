@@ -109,13 +109,15 @@ AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, con
   AlignmentResult result;
   result.pixel = start;
   PatchTemplate::Samples samples(patch.grey.size());
+  // Of two variances of a tenth grey value squared: on flat patches the correlation would be rounding errors over nothing.
+  const float least_square = 0.01f * count * count;
   const auto radius = static_cast<float>(patch.side / 2);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     if (!readable(image, result.pixel, radius)) return result;
     sampleWindow(image, result.pixel, patch.side, samples.data());
     const float sum = samples.sum(), square = samples.squaredNorm(), product = patch.grey.dot(samples);
     const float variance = square - sum * sum / count;
-    result.correlation = product / std::sqrt(std::max(1e-6f, variance * patch.normal_matrix(2, 2)));
+    result.correlation = product / std::sqrt(std::max(least_square, variance * patch.normal_matrix(2, 2)));
     // Normal equations of T(x + delta) (1 + gain) + bias = I(x + pixel); the template's terms have no mean, so the bias drops out.
     const Eigen::Vector2f pull = damping * (result.pixel - prediction);
     const Eigen::Vector3f right(patch.gradient_x.dot(samples) - patch.normal_matrix(0, 2) + pull.x(),
