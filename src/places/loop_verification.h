@@ -1,0 +1,83 @@
+// P26: is a candidate the same place? 3D-3D correspondences, a similarity by Horn's method in RANSAC, refined on
+// reprojection errors, and enough points that agree. A wrong loop is worse than none: every doubt refuses.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "places/guided_matching.h"
+#include "places/keyframe_matching.h"
+
+namespace edgeslam {
+
+struct LoopVerificationOptions {
+  KeyframeMatchingOptions matching;
+  GuidedMatchingOptions guided;
+  int neighbours = 4;  // keyframes whose points join those of each of the two
+  int ransac_iterations = 400;
+  int fewest_descriptor_inliers = 15;  // before patches are looked for
+  double outlier = 3.0;                // whitened error of an inlier, in either image and in depth
+  double map_error = 0.7;              // of the maps' shapes, added to each measurement's deviations [px]
+  double depth_error = 0.05;           // likewise to the distances, as a share of them
+  int most_needed_inliers = 100;       // the paper's count ...
+  int fewest_needed_inliers = 40;      // ... less in a poor scene, never less than this ...
+  double needed_share = 0.5;           // ... but this share of the points that both sides have mapped
+  double least_found_share = 0.4;      // of the points that should be visible, this share must be found and agree
+  int fewest_cells = 5;                // of the image's 16 parts, so many must hold inliers
+  double largest_scale = 3;            // of the similarity, or its inverse
+};
+
+struct LoopVerification {
+  bool accepted = false;
+  std::string reason;              // why not, or what speaks for it, in words
+  Similarity current_S_candidate;  // camera coordinates of the candidate to those of the current keyframe
+  int descriptor_pairs = 0, descriptor_inliers = 0;
+  int inliers = 0, needed_inliers = 0;
+  double found_share = 0;
+  // Points of the candidate's side found in the current keyframe that agree with the similarity.
+  struct Found {
+    PointId candidate_point = 0;
+    PointId current_point = -1;  // its counterpart on the current side, or -1
+    Measurement measurement;     // in the current keyframe
+  };
+  std::vector<Found> found;
+};
+
+// Same seed, same result.
+LoopVerification verifyLoop(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
+                            const LoopVerificationOptions& options, std::uint64_t seed);
+
+// A point of the candidate's side, seen in the current image, and, where it is mapped there too, its counterpart.
+struct PlaceCorrespondence {
+  Eigen::Vector3d candidate_point;  // candidate's camera frame
+  Measurement in_current;           // of the candidate's point, or of its counterpart
+  bool paired = false;              // what follows holds
+  Eigen::Vector3d current_point;    // current camera frame
+  Measurement in_candidate;
+  double depth_deviation = 0.1;  // of the ratio of the two distances
+};
+
+// Largest whitened error of a correspondence: in the current image; for a pair also in the candidate's image and in
+// distance. Infinite behind a camera.
+double correspondenceError(const Camera& camera, const PlaceCorrespondence& correspondence,
+                           const Similarity& current_S_candidate);
+
+struct SimilarityEstimate {
+  bool found = false;
+  Similarity current_S_candidate;
+  std::vector<char> inliers;
+  int inlier_count = 0;
+};
+
+// Horn's method on samples of three pairs, in RANSAC, then refined on all inliers. Not found: fewer than
+// `fewest_inliers`. All correspondences must be paired.
+SimilarityEstimate estimateSimilarity(const Camera& camera, const std::vector<PlaceCorrespondence>& pairs,
+                                      double outlier, int fewest_inliers, int iterations, std::uint64_t seed);
+
+// Gauss-Newton on the whitened errors of both images and of the distances, robust. Returns the refined similarity, or
+// the one given where that fails.
+Similarity refineSimilarity(const Camera& camera, const std::vector<PlaceCorrespondence>& correspondences,
+                            const Similarity& start, double huber, int iterations);
+
+}  // namespace edgeslam
