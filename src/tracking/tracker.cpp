@@ -71,7 +71,7 @@ Tracker::TrackedState Tracker::prepare(std::int64_t frame_index, std::int64_t ti
   auto images = std::make_shared<FrameImages>();
   images->frame_index = frame_index;
   images->time_ns = time_ns;
-  images->pyramid = buildPyramid(grey, options_.flow.levels);
+  images->pyramid = buildPyramid(grey, std::max(options_.flow.levels, 6));
   clock.finished("pyramid");
   frame.edges = detectEdges(images->pyramid.levels[0], options_.edges);
   clock.finished("edges");
@@ -102,8 +102,9 @@ void Tracker::startMap(TrackedState frame, TrackingOutcome& outcome) {
 }
 
 bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, StageClock& clock) const {
-  const Pose predicted = predictPose(frame.images->time_ns);
   const double scene_depth = medianDepth(from.tracks, view_, from.world_T_camera, 1.0);
+  const Pose predicted = alignImages(from, frame, predictPose(frame.images->time_ns), scene_depth);
+  clock.finished("alignment");
   const auto predictions = predictPixels(camera_, from.tracks, view_, from.world_T_camera, predicted, scene_depth);
   const auto matches = followPoints(*from.images, *frame.images, from.tracks, predictions, options_.flow);
   frame.tracks = filterTracks(*from.images, *frame.images, frame.edges, from.tracks, matches, options_.flow);
@@ -134,6 +135,25 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
   for (Track& track : frame.tracks) updateAccuracy(grey, options_.points, track);
   clock.finished("pose");
   return true;
+}
+
+// The motion since the last frame from the images as a whole: first its rotation, then all of it by the tracks' patches.
+Pose Tracker::alignImages(const TrackedState& from, const TrackedState& to, const Pose& world_T_predicted, double scene_depth) const {
+  const Pose by_velocity = world_T_predicted.inverse() * from.world_T_camera;
+  const Eigen::Quaterniond turned =
+      alignRotation(camera_, rotation_grids_, from.images->pyramid, to.images->pyramid, by_velocity.rotation);
+  const Pose by_rotation{turned, by_velocity.translation};
+  const Pose from_T_world = from.world_T_camera.inverse();
+  std::vector<AlignmentPoint> points;
+  points.reserve(from.tracks.size());
+  for (const Track& track : from.tracks) {
+    const ViewPoint* point = findPoint(view_, track.id);
+    const double depth = point ? (from_T_world * worldPosition(view_, *point)).norm() : scene_depth;
+    points.push_back({track.pixel, bearing(camera_, track.pixel.cast<double>()) * depth});
+  }
+  const Pose to_T_from = alignSparsely(camera_, from.images->pyramid, to.images->pyramid, points, by_rotation, by_velocity,
+                                       options_.alignment);
+  return from.world_T_camera * to_T_from.inverse();
 }
 
 KeyframeDecision Tracker::judge(const TrackedState& frame) const {

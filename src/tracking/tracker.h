@@ -14,6 +14,8 @@
 #include "tracking/keyframe_selection.h"
 #include "tracking/patch_refinement.h"
 #include "tracking/pose_estimation.h"
+#include "tracking/rotation_alignment.h"
+#include "tracking/sparse_alignment.h"
 #include "tracking/stage_times.h"
 
 namespace edgeslam {
@@ -26,6 +28,7 @@ struct TrackerOptions {
   PoseOptions pose;
   RefinementOptions refinement;
   EdgeLockOptions edge_lock;
+  SparseAlignmentOptions alignment;
   KeyframeOptions keyframes;
   int fewest_tracks = 30;             // fewer are not enough to start a map with
   double restart_share = 0.5;         // of the first frame's tracks: fewer left, and the initialisation starts anew
@@ -50,7 +53,8 @@ struct TrackingOutcome {
 
 class Tracker {
  public:
-  Tracker(const Camera& camera, const TrackerOptions& options) : camera_(camera), options_(options) {}
+  Tracker(const Camera& camera, const TrackerOptions& options)
+      : camera_(camera), options_(options), rotation_grids_(makeRotationGrids(camera)) {}
 
   // Takes over a newer view of the map, between two frames.
   void adopt(const MapView& view);
@@ -83,10 +87,12 @@ class Tracker {
   void choosePointsIn(TrackedState& frame, KeyframeId keyframe);
   TrackedFrame describe(const TrackedState& frame, KeyframeId keyframe, const char* reason) const;
   Pose predictPose(std::int64_t time_ns) const;
+  Pose alignImages(const TrackedState& from, const TrackedState& to, const Pose& world_T_predicted, double scene_depth) const;
   void remember(TrackedState frame);
 
   Camera camera_;
   TrackerOptions options_;
+  std::vector<RotationGrid> rotation_grids_;
   MapView view_;
   BlurGate blur_gate_;
   TrackedState last_;               // the last frame that was tracked

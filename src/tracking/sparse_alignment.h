@@ -1,0 +1,30 @@
+// Motion between two frames from small patches around all tracks at once, coarse to fine (Forster et al. 2014, sparse
+// model-based image alignment): a single edge can be taken for its neighbour, all of them together hardly. It starts the flow.
+#pragma once
+
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/pose.h"
+#include "image/pyramid.h"
+
+namespace edgeslam {
+
+struct AlignmentPoint {
+  Eigen::Vector2f pixel;       // in the first frame [px]
+  Eigen::Vector3d position;    // in the first camera's frame, map units
+};
+
+struct SparseAlignmentOptions {
+  int coarsest_level = 4;
+  int finest_level = 1;
+  int iterations = 10;         // most steps a level
+  double huber = 12;           // of the grey difference, from where on it counts linearly [grey]
+};
+
+// to_T_from, from the better of the two starts. Returns `first_start` where too few patches can be compared.
+Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePyramid& to,
+                   const std::vector<AlignmentPoint>& points, const Pose& first_start, const Pose& second_start,
+                   const SparseAlignmentOptions& options);
+
+}  // namespace edgeslam
