@@ -57,6 +57,21 @@ TEST(Pyramid, LevelZeroIsTheImageAndTheBorderMayBeRead) {
   }
 }
 
+TEST(Pyramid, TheBorderMirrorsTheImage) {
+  const ImagePyramid pyramid = buildPyramid(hill({160, 120}, 20, 100), 3);
+  for (const cv::Mat& level : pyramid.levels) {
+    // Through the pointer, as windows are read: the whole image goes on to all sides of the level.
+    const auto at = [&](int x, int y) { return level.data[static_cast<std::ptrdiff_t>(level.step[0]) * y + x]; };
+    for (int k = 1; k <= std::min(pyramid_border, level.rows - 1); ++k) {
+      EXPECT_EQ(at(-k, level.rows / 2), at(k, level.rows / 2));
+      EXPECT_EQ(at(level.cols - 1 + k, level.rows / 2), at(level.cols - 1 - k, level.rows / 2));
+      EXPECT_EQ(at(level.cols / 3, -k), at(level.cols / 3, k));
+      EXPECT_EQ(at(level.cols / 3, level.rows - 1 + k), at(level.cols / 3, level.rows - 1 - k));
+      EXPECT_EQ(at(-k, level.rows - 1 + k), at(k, level.rows - 1 - k));
+    }
+  }
+}
+
 TEST(Pyramid, FlatStaysFlatAtOddSizes) {
   const ImagePyramid pyramid = buildPyramid(cv::Mat(101, 77, CV_8U, cv::Scalar(93)), 3);
   for (const cv::Mat& level : pyramid.levels) {

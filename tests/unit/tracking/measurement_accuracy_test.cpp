@@ -1,0 +1,85 @@
+#include "tracking/measurement_accuracy.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/edges/synthetic_image.h"
+
+namespace edgeslam {
+namespace {
+
+const cv::Size size{120, 100};
+
+Track trackAt(float x, float y, const Eigen::Vector2f& normal) {
+  Track track;
+  track.pixel = {x, y};
+  track.normal = normal.normalized();
+  return track;
+}
+
+TEST(MeasurementAccuracy, AnEdgePointIsKnownAcrossAndNotAlong) {
+  const PointChoiceOptions options;
+  for (const double degrees : {0.0, 30.0, 100.0, 200.0}) {
+    const Line line = lineThrough(60, 50, degrees);
+    Track track = trackAt(60, 50, line.normal.cast<float>() + Eigen::Vector2f(0.2f, -0.1f));
+    updateAccuracy(renderLine(size, line), options, track);
+    EXPECT_GT(track.normal.dot(line.normal.cast<float>()), 0.999f) << degrees;
+    EXPECT_FALSE(track.corner);
+    EXPECT_EQ(track.sigma_normal, static_cast<float>(options.sigma_edge));
+    EXPECT_GT(track.sigma_tangent, 10 * track.sigma_normal) << degrees;
+  }
+}
+
+// From dark to bright it is only told by the edge; the tensor has no sign.
+TEST(MeasurementAccuracy, TheNormalKeepsItsSide) {
+  const Line line = lineThrough(60, 50, 40);
+  const cv::Mat image = renderLine(size, line);
+  for (const float side : {1.0f, -1.0f}) {
+    Track track = trackAt(60, 50, side * line.normal.cast<float>());
+    updateAccuracy(image, PointChoiceOptions(), track);
+    EXPECT_GT(side * track.normal.dot(line.normal.cast<float>()), 0.999f);
+  }
+}
+
+TEST(MeasurementAccuracy, ACornerIsKnownInBothDirections) {
+  const PointChoiceOptions options;
+  Track track = trackAt(59.5f, 39.5f, {1, 0});  // where four squares of 20 px meet
+  updateAccuracy(renderCheckerboard(size, 20), options, track);
+  EXPECT_TRUE(track.corner);
+  EXPECT_EQ(track.sigma_normal, static_cast<float>(options.sigma_corner));
+  EXPECT_LT(track.sigma_tangent, 2 * track.sigma_normal);
+}
+
+TEST(MeasurementAccuracy, ATrackThatBecomesACornerAndLeavesItAgainIsRenewed) {
+  const PointChoiceOptions options;
+  const cv::Mat image = renderCheckerboard(size, 30);
+  Track track = trackAt(59.5f, 59.5f, {1, 0});
+  updateAccuracy(image, options, track);
+  EXPECT_TRUE(track.corner);
+  track.pixel = {59.5f, 44.5f};  // half way to the next
+  updateAccuracy(image, options, track);
+  EXPECT_FALSE(track.corner);
+  EXPECT_EQ(track.sigma_normal, static_cast<float>(options.sigma_edge));
+  EXPECT_NEAR(std::abs(track.normal.x()), 1, 1e-3);
+}
+
+TEST(MeasurementAccuracy, NoiseTellsNothingOfThePlaceAlongAnEdge) {
+  const PointChoiceOptions options;
+  const cv::Mat noisy = withNoise(renderLine(size, lineThrough(60, 50, 20)), 2.0, 5);
+  Track track = trackAt(60, 50, {1, 0.3f});
+  updateAccuracy(noisy, options, track);
+  EXPECT_FALSE(track.corner);
+  EXPECT_GT(track.sigma_tangent, 10 * track.sigma_normal);
+}
+
+TEST(MeasurementAccuracy, SigmasStayFiniteOnAFlatImage) {
+  Track track = trackAt(60, 50, {1, 0});
+  updateAccuracy(cv::Mat(size, CV_8U, cv::Scalar(90)), PointChoiceOptions(), track);
+  EXPECT_FALSE(track.corner);
+  EXPECT_GT(track.sigma_normal, 0);
+  EXPECT_TRUE(std::isfinite(track.sigma_tangent));
+  EXPECT_TRUE(track.normal.allFinite());
+  EXPECT_NEAR(track.normal.norm(), 1, 1e-5);
+}
+
+}  // namespace
+}  // namespace edgeslam

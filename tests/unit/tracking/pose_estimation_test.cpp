@@ -1,0 +1,137 @@
+#include "tracking/pose_estimation.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/adjustment/synthetic_scene.h"
+#include "unit/tracking/textured_plane.h"
+
+namespace edgeslam {
+namespace {
+
+// Points of a scene with depth, half of them hosted in each of two keyframes, and the tracks that see them.
+class PoseEstimation : public ::testing::Test {
+ protected:
+  PoseEstimation() {
+    view_.initialised = true;
+    view_.keyframe_poses = {Pose(), {rotationExp({0.02, -0.05, 0.01}), {0.3, 0, 0.1}}};
+    test::Random random(3);
+    for (PointId id = 0; id < 120; ++id) {
+      const Eigen::Vector2d pixel = test::randomPixel(random, camera_);
+      const Eigen::Vector3d point = truth_ * (test::uniform(random, 1.5, 5) * bearing(camera_, pixel));
+      if (id % 4 != 3) view_.points.push_back(viewPoint(view_, id, static_cast<KeyframeId>(id % 2), point));
+      const double angle = test::uniform(random, 0, 2 * M_PI);
+      Track track = trackAt(id, pixel.cast<float>(), Eigen::Vector2d(std::cos(angle), std::sin(angle)).cast<float>());
+      if (id % 3 == 0) {
+        track.corner = true;
+        track.sigma_normal = track.sigma_tangent = 0.2f;
+      } else {  // slid along its edge
+        const Eigen::Vector2f tangent(-track.normal.y(), track.normal.x());
+        track.pixel += static_cast<float>(test::uniform(random, -3, 3)) * tangent;
+      }
+      tracks_.push_back(track);
+    }
+  }
+
+  void expectTruth(const FramePose& pose, double translation = 1e-3, double rotation = 1e-3) const {
+    ASSERT_TRUE(pose.result.converged);
+    EXPECT_LT((pose.result.world_T_camera.translation - truth_.translation).norm(), translation);
+    EXPECT_LT(rotationAngle(pose.result.world_T_camera.rotation, truth_.rotation), rotation);
+  }
+
+  const Camera camera_ = smallCamera();
+  const Pose truth_{rotationExp({-0.03, 0.08, 0.05}), {0.4, -0.1, 0.2}};
+  MapView view_;
+  std::vector<Track> tracks_;
+};
+
+TEST_F(PoseEstimation, FindsThePoseFromAPredictionNearBy) {
+  test::Random random(4);
+  const FramePose pose =
+      estimatePose(camera_, view_, tracks_, test::perturbed(random, truth_, 0.05, 0.03), PoseOptions());
+  expectTruth(pose);
+  EXPECT_FALSE(pose.by_resectioning);
+  EXPECT_EQ(pose.result.inlier_count, 90);
+}
+
+TEST_F(PoseEstimation, TellsWhichTracksHadAMapPoint) {
+  const FramePose pose = estimatePose(camera_, view_, tracks_, truth_, PoseOptions());
+  ASSERT_EQ(pose.track_of_observation.size(), view_.points.size());
+  ASSERT_EQ(pose.result.inliers.size(), view_.points.size());
+  for (std::size_t i = 0; i < view_.points.size(); ++i) {
+    EXPECT_EQ(tracks_[static_cast<std::size_t>(pose.track_of_observation[i])].id, view_.points[i].id);
+  }
+}
+
+TEST_F(PoseEstimation, OutliersAreNamed) {
+  for (std::size_t i = 0; i < tracks_.size(); i += 10) tracks_[i].pixel += 30 * tracks_[i].normal;
+  const FramePose pose = estimatePose(camera_, view_, tracks_, truth_, PoseOptions());
+  expectTruth(pose, 0.01, 0.01);
+  for (std::size_t i = 0; i < pose.track_of_observation.size(); ++i) {
+    EXPECT_EQ(pose.result.inliers[i] == 0, pose.track_of_observation[i] % 10 == 0) << pose.track_of_observation[i];
+  }
+}
+
+TEST_F(PoseEstimation, AFailingPredictionIsReplacedByResectioning) {
+  for (Track& track : tracks_) {  // resectioning takes pixels as they are
+    const ViewPoint* point = findPoint(view_, track.id);
+    if (point) track.pixel = project(camera_, truth_.inverse() * worldPosition(view_, *point)).cast<float>();
+  }
+  const Pose far_off{truth_.rotation * rotationExp({0, 1.2, 0}), truth_.translation + Eigen::Vector3d(2, 0, -1)};
+  const FramePose pose = estimatePose(camera_, view_, tracks_, far_off, PoseOptions());
+  EXPECT_TRUE(pose.by_resectioning);
+  expectTruth(pose);
+  const FramePose again = estimatePose(camera_, view_, tracks_, far_off, PoseOptions());
+  EXPECT_EQ(pose.result.world_T_camera.translation, again.result.world_T_camera.translation);
+}
+
+// The flat map of a start is not the scene: a pose that fits it from anywhere would be an accident.
+TEST_F(PoseEstimation, BeforeTheMapStandsThereIsNoResectioning) {
+  view_.initialised = false;
+  const Pose far_off{truth_.rotation * rotationExp({0, 1.2, 0}), truth_.translation + Eigen::Vector3d(2, 0, -1)};
+  EXPECT_FALSE(estimatePose(camera_, view_, tracks_, far_off, PoseOptions()).by_resectioning);
+}
+
+TEST_F(PoseEstimation, AFlatViewSeenFromWhereItWasMadeGivesThatPose) {
+  TrackedFrame first;
+  for (const Track& track : tracks_) {
+    PointObservation observation;
+    observation.point = track.id;
+    observation.bearing = bearing(camera_, track.pixel.cast<double>());
+    first.observations.push_back(observation);
+  }
+  const FramePose pose = estimatePose(camera_, flatView(first), tracks_,
+                                      {rotationExp({0, 0.02, 0.01}), {0.02, -0.01, 0.01}}, PoseOptions());
+  ASSERT_TRUE(pose.result.converged);
+  EXPECT_LT(pose.result.world_T_camera.translation.norm(), 1e-3);
+  EXPECT_LT(rotationAngle(pose.result.world_T_camera.rotation, Eigen::Quaterniond::Identity()), 1e-3);
+}
+
+TEST_F(PoseEstimation, ADepthThatIsNotKnownWeighsLessAlongItsRay) {
+  // Half of the points have a wrong depth, and say so.
+  for (std::size_t i = 0; i < view_.points.size(); i += 2) {
+    view_.points[i].inverse_depth *= 1.4;
+    view_.points[i].inverse_depth_sigma = 0.4 * view_.points[i].inverse_depth;
+  }
+  PoseOptions options;
+  const FramePose honest = estimatePose(camera_, view_, tracks_, truth_, options);
+  for (ViewPoint& point : view_.points) point.inverse_depth_sigma = 1e-6;
+  const FramePose overconfident = estimatePose(camera_, view_, tracks_, truth_, options);
+  ASSERT_TRUE(honest.result.converged);
+  const auto error = [&](const FramePose& pose) {
+    return (pose.result.world_T_camera.translation - truth_.translation).norm();
+  };
+  EXPECT_LT(error(honest), 0.02);
+  EXPECT_LT(error(honest), error(overconfident) + 1e-6);
+}
+
+TEST_F(PoseEstimation, TooFewPointsGiveNoPose) {
+  view_.points.resize(8);
+  EXPECT_FALSE(estimatePose(camera_, view_, tracks_, truth_, PoseOptions()).result.converged);
+  view_.points.clear();
+  const FramePose none = estimatePose(camera_, view_, tracks_, truth_, PoseOptions());
+  EXPECT_FALSE(none.result.converged);
+  EXPECT_TRUE(none.track_of_observation.empty());
+}
+
+}  // namespace
+}  // namespace edgeslam
