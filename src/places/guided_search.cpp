@@ -16,6 +16,7 @@ struct Round {
   double radius = 0;  // [px]
   int coarsest_level = 0;
   double widening = 1;
+  int most_points = 0;
 };
 
 struct RoundResult {
@@ -74,7 +75,8 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
   search.coarsest_level = round.coarsest_level;
   std::vector<KeyframeId> keyframes;
   const std::vector<SearchPoint> points = searchPoints(map, ids, start, keyframes);
-  const std::vector<VisiblePoint> visible = thinOut(points, visiblePoints(camera, points, start, search), most_points);
+  const std::vector<VisiblePoint> visible =
+      thinOut(points, visiblePoints(camera, points, start, search), round.most_points);
 
   RoundResult result;
   result.visible = static_cast<int>(visible.size());
@@ -122,23 +124,38 @@ std::string of(int count, int all, const char* what) {
   return std::to_string(count) + " of " + std::to_string(all) + " " + what;
 }
 
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+PoseEvidence countEvidence(const RoundResult& round) {
+  PoseEvidence evidence;
+  evidence.visible = round.visible;
+  evidence.visible_corners = round.visible_corners;
+  if (!round.pose.converged) return evidence;
+  evidence.inliers = round.pose.inlier_count;
+  for (std::size_t i = 0; i < round.matches.size(); ++i) {
+    evidence.corner_inliers += round.pose.inliers[i] && round.matches[i].corner ? 1 : 0;
+  }
+  return evidence;
+}
+
 // Empty where the pose can be trusted.
-std::string reasonToRefuse(const Camera& camera, const RoundResult& last, const std::vector<MatchedPoint>& inliers,
-                           double median_distance, const GuidedSearchOptions& options) {
-  const auto count = static_cast<int>(inliers.size());
-  if (count < std::max<double>(options.fewest_inliers, options.inlier_share * last.visible)) {
-    return of(count, last.visible, "points in view agree");
+std::string reasonToRefuse(const PoseEvidence& evidence, const GuidedSearchOptions& options) {
+  if (evidence.inliers < std::max<double>(options.fewest_inliers, options.inlier_share * evidence.visible)) {
+    return of(evidence.inliers, evidence.visible, "points in view agree");
   }
-  const auto corners =
-      static_cast<int>(std::count_if(inliers.begin(), inliers.end(), [](const auto& m) { return m.corner; }));
-  if (last.visible_corners >= options.fewest_corners && corners < options.corner_share * last.visible_corners) {
-    return of(corners, last.visible_corners, "corners in view agree");
+  if (evidence.visible_corners >= options.fewest_corners &&
+      evidence.corner_inliers < options.corner_share * evidence.visible_corners) {
+    return of(evidence.corner_inliers, evidence.visible_corners, "corners in view agree");
   }
-  if (cellsCovered(camera, inliers) < options.fewest_cells) return "what agrees covers too little of the image";
-  const double position_sigma = largestSigma(last.pose.covariance.topLeftCorner<3, 3>()) / median_distance;
-  if (!(position_sigma < options.position_sigma)) return "what agrees leaves the position undetermined";
-  const double rotation_sigma_deg = largestSigma(last.pose.covariance.bottomRightCorner<3, 3>()) * 180 / M_PI;
-  if (!(rotation_sigma_deg < options.rotation_sigma_deg)) return "what agrees leaves the rotation undetermined";
+  if (evidence.cells < options.fewest_cells) return "what agrees covers too little of the image";
+  if (!(evidence.position_sigma < options.position_sigma)) return "what agrees leaves the position undetermined";
+  if (!(evidence.rotation_sigma_deg < options.rotation_sigma_deg)) {
+    return "what agrees leaves the rotation undetermined";
+  }
   return "";
 }
 
@@ -198,34 +215,30 @@ std::vector<SearchPoint> searchPoints(const Map& map, const std::vector<PointId>
   return result;
 }
 
+ScreenedPose screenPose(const Camera& camera, const Map& map, const std::vector<PointId>& points,
+                        const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
+                        const GuidedSearchOptions& options) {
+  const Round round{options.screening_radius, 2, 6, options.screened_points};
+  const RoundResult result = searchOnce(camera, map, points, current, edges, world_T_camera, options, round);
+  return {result.pose.world_T_camera, countEvidence(result)};
+}
+
 GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std::vector<PointId>& points,
                                 const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
                                 const GuidedSearchOptions& options) {
-  const int all = static_cast<int>(points.size());
-  const Round screening{options.screening_radius, 2, 6};
-  const Round rounds[] = {{2 * options.search.radius, 1, 3}, {options.search.radius, options.search.coarsest_level, 1}};
-
+  const Round rounds[] = {{2 * options.search.radius, 1, 3, options.screened_points},
+                          {options.search.radius, options.search.coarsest_level, 1, options.searched_points}};
   GuidedSearchResult result;
-  RoundResult last =
-      searchOnce(camera, map, points, current, edges, world_T_camera, options, screening, options.screened_points);
-  result.visible = last.visible;
-  // Screening asks for half of what is asked in the end.
-  const auto few = [&] {
-    return !last.pose.converged || last.pose.inlier_count < 0.5 * options.inlier_share * last.visible;
-  };
+  RoundResult last;
+  last.pose.world_T_camera = world_T_camera;
   for (const Round& round : rounds) {
-    if (few()) {
-      result.reason =
-          of(last.pose.converged ? last.pose.inlier_count : 0, last.visible, "points in view agree roughly");
+    last = searchOnce(camera, map, points, current, edges, last.pose.world_T_camera, options, round);
+    result.pose = last.pose;
+    result.evidence = countEvidence(last);
+    if (!last.pose.converged) {
+      result.reason = "what was found of the map gives no pose";
       return result;
     }
-    last = searchOnce(camera, map, points, current, edges, last.pose.world_T_camera, options, round, all);
-  }
-  result.pose = last.pose;
-  result.visible = last.visible;
-  if (!last.pose.converged) {
-    result.reason = "what was found in the frame gives no pose";
-    return result;
   }
   std::vector<double> distances;
   for (std::size_t i = 0; i < last.matches.size(); ++i) {
@@ -233,9 +246,11 @@ GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std:
     result.inliers.push_back(last.matches[i]);
     distances.push_back(last.distances[i]);
   }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  result.reason = reasonToRefuse(camera, last, result.inliers, *middle, options);
+  PoseEvidence& evidence = result.evidence;
+  evidence.cells = cellsCovered(camera, result.inliers);
+  evidence.position_sigma = largestSigma(last.pose.covariance.topLeftCorner<3, 3>()) / medianOf(std::move(distances));
+  evidence.rotation_sigma_deg = largestSigma(last.pose.covariance.bottomRightCorner<3, 3>()) * 180 / M_PI;
+  result.reason = reasonToRefuse(evidence, options);
   result.accepted = result.reason.empty();
   return result;
 }

@@ -18,7 +18,8 @@ struct GuidedSearchOptions {
   MapSearchOptions search;  // of the last round; the first ones search farther
   PoseOptions pose;
   PointChoiceOptions accuracy;   // how the found points' accuracy is told
-  int screened_points = 160;     // searched for in the first round
+  int screened_points = 120;     // searched for in the first round ...
+  int searched_points = 300;     // ... and in each later one, at most
   double screening_radius = 20;  // [px]
   int neighbours = 6;            // covisible keyframes whose points are searched for too
   int fewest_inliers = 30;
@@ -38,11 +39,24 @@ struct MatchedPoint {
   KeyframeId keyframe = -1;  // whose patch it was found by
 };
 
+// How much of what the map says about a pose the frame shows.
+struct PoseEvidence {
+  int visible = 0;          // map points that should be in view, of those searched for
+  int inliers = 0;          // of these found and in agreement
+  int visible_corners = 0;  // likewise the corners among them
+  int corner_inliers = 0;
+  int cells = 0;                  // of a grid of 4 x 4 over the image, that inliers lie in
+  double position_sigma = 0;      // largest standard deviation of the position, share of the points' median distance
+  double rotation_sigma_deg = 0;  // and of the rotation
+
+  double share() const { return visible > 0 ? static_cast<double>(inliers) / visible : 0.0; }
+};
+
 struct GuidedSearchResult {
   bool accepted = false;
   std::string reason;  // why not
   PoseResult pose;
-  int visible = 0;  // points that should be in view, in the last round
+  PoseEvidence evidence;
   std::vector<MatchedPoint> inliers;
 };
 
@@ -54,6 +68,16 @@ std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neigh
 std::vector<SearchPoint> searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
                                       std::vector<KeyframeId>& keyframes);
 
+// A first look from a rough pose at some of the points: the pose adjusted to them and what speaks for it.
+struct ScreenedPose {
+  Pose world_T_camera;
+  PoseEvidence evidence;  // counts only
+};
+ScreenedPose screenPose(const Camera& camera, const Map& map, const std::vector<PointId>& points,
+                        const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
+                        const GuidedSearchOptions& options);
+
+// From a screened pose to the final one, or the reason to refuse it.
 GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std::vector<PointId>& points,
                                 const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
                                 const GuidedSearchOptions& options);

@@ -5,6 +5,16 @@
 #include "geometry/resectioning.h"
 
 namespace edgeslam {
+namespace {
+
+// Two sizes of the patch on either side bridge distances that differ by up to twice; more would only cost.
+DescribedPoints describeAtTwoSizes(const cv::Mat& grey, const std::vector<Eigen::Vector2f>& pixels, double roll) {
+  DescribedPoints described = describePoints(grey, pixels, roll);
+  if (described.descriptors.size() > 2) described.descriptors.resize(2);
+  return described;
+}
+
+}  // namespace
 
 void Relocalisation::addKeyframe(const Keyframe& keyframe) {
   if (!keyframe.images) return;
@@ -15,7 +25,7 @@ void Relocalisation::addKeyframe(const Keyframe& keyframe) {
   }
   KnownKeyframe known;
   known.thumbnail = makeThumbnail(pyramid);
-  known.described = describePoints(pyramid.levels[0], pixels, 0);
+  known.described = describeAtTwoSizes(pyramid.levels[0], pixels, 0);
   for (const int index : known.described.points) {
     known.points.push_back(keyframe.observations[static_cast<std::size_t>(index)].point);
   }
@@ -59,6 +69,77 @@ std::optional<Pose> Relocalisation::poseByDescriptors(const Map& map, KeyframeId
   return result.camera_T_world.inverse();
 }
 
+// As if the camera had stood where the keyframe's did and only turned.
+std::vector<Relocalisation::Start> Relocalisation::startsByTurning(const Map& map,
+                                                                   const std::vector<Candidate>& candidates) const {
+  std::vector<Start> starts;
+  for (const Candidate& candidate : candidates) {
+    const Pose& pose = map.keyframes[static_cast<std::size_t>(candidate.keyframe)].world_T_camera;
+    starts.push_back({candidate.keyframe, pose * Pose{rotationOf(camera_, candidate.match), Eigen::Vector3d::Zero()}});
+  }
+  return starts;
+}
+
+std::vector<Relocalisation::Start> Relocalisation::startsByDescriptors(const Map& map,
+                                                                       const std::vector<Candidate>& candidates,
+                                                                       const FrameImages& current,
+                                                                       const EdgeMap& edges) const {
+  const cv::Mat& grey = current.pyramid.levels[0];
+  std::vector<Eigen::Vector2f> pixels;
+  for (const ChosenPoint& point : choosePoints(grey, edges, {}, options_.points)) pixels.push_back(point.pixel);
+  std::vector<Start> starts;
+  DescribedPoints frame;
+  double described_roll = 0;
+  for (const Candidate& candidate : candidates) {
+    if (static_cast<int>(starts.size()) == options_.matched_candidates) break;
+    const double roll = -candidate.match.roll;
+    if (frame.points.empty() || roll != described_roll) frame = describeAtTwoSizes(grey, pixels, roll);
+    described_roll = roll;
+    if (const auto pose = poseByDescriptors(map, candidate.keyframe, frame))
+      starts.push_back({candidate.keyframe, *pose});
+  }
+  return starts;
+}
+
+// A first look from each start, then the best are followed up. True, with the result, at the first that is accepted.
+bool Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map, const FrameImages& current,
+                                const EdgeMap& edges, RelocalisationResult& result) const {
+  struct Screened {
+    KeyframeId keyframe;
+    std::vector<PointId> points;
+    ScreenedPose pose;
+  };
+  const GuidedSearchOptions& options = options_.guided_search;
+  std::vector<Screened> screened;
+  for (const Start& start : starts) {
+    Screened look{start.keyframe, pointsAround(map, start.keyframe, options.neighbours), {}};
+    look.pose = screenPose(camera_, map, look.points, current, edges, start.world_T_camera, options);
+    if (look.pose.evidence.share() >= options_.screened_share) screened.push_back(std::move(look));
+  }
+  std::stable_sort(screened.begin(), screened.end(), [](const Screened& a, const Screened& b) {
+    return a.pose.evidence.share() > b.pose.evidence.share();
+  });
+  if (static_cast<int>(screened.size()) > options_.refined_poses) {
+    screened.resize(static_cast<std::size_t>(options_.refined_poses));
+  }
+  for (const Screened& look : screened) {
+    GuidedSearchResult search =
+        guidedSearch(camera_, map, look.points, current, edges, look.pose.world_T_camera, options);
+    if (!search.accepted && search.evidence.share() <= result.evidence.share()) continue;
+    result.found = search.accepted;
+    result.reason = std::move(search.reason);
+    result.world_T_camera = search.pose.world_T_camera;
+    result.pose = std::move(search.pose);
+    result.keyframe = look.keyframe;
+    result.evidence = search.evidence;
+    if (result.found) {
+      result.matches = std::move(search.inliers);
+      return true;
+    }
+  }
+  return false;
+}
+
 RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImages& current,
                                                 const EdgeMap& edges) const {
   RelocalisationResult result;
@@ -67,42 +148,9 @@ RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImage
     result.reason = "no keyframe looks like this frame";
     return result;
   }
-  int most_inliers = -1;
-  const auto searchFrom = [&](KeyframeId keyframe, const Pose& start) {
-    const std::vector<PointId> points = pointsAround(map, keyframe, options_.guided_search.neighbours);
-    GuidedSearchResult search = guidedSearch(camera_, map, points, current, edges, start, options_.guided_search);
-    if (!search.accepted && search.pose.inlier_count <= most_inliers) return false;
-    most_inliers = search.pose.inlier_count;
-    result.found = search.accepted;
-    result.reason = std::move(search.reason);
-    result.world_T_camera = search.pose.world_T_camera;
-    result.pose = std::move(search.pose);
-    result.keyframe = keyframe;
-    result.visible = search.visible;
-    if (result.found) result.matches = std::move(search.inliers);
-    return result.found;
-  };
-
-  // First as if the camera had only turned, which is cheap.
-  for (const Candidate& candidate : tried) {
-    const Pose& pose = map.keyframes[static_cast<std::size_t>(candidate.keyframe)].world_T_camera;
-    const Pose start = pose * Pose{rotationOf(camera_, candidate.match), Eigen::Vector3d::Zero()};
-    if (searchFrom(candidate.keyframe, start)) return result;
-  }
-
-  const cv::Mat& grey = current.pyramid.levels[0];
-  std::vector<Eigen::Vector2f> pixels;
-  for (const ChosenPoint& point : choosePoints(grey, edges, {}, options_.points)) pixels.push_back(point.pixel);
-  DescribedPoints frame;
-  double described_roll = 0;
-  for (int i = 0; i < std::min(options_.matched_candidates, static_cast<int>(tried.size())); ++i) {
-    const Candidate& candidate = tried[static_cast<std::size_t>(i)];
-    const double roll = -candidate.match.roll;
-    if (frame.points.empty() || roll != described_roll) frame = describePoints(grey, pixels, roll);
-    described_roll = roll;
-    const std::optional<Pose> start = poseByDescriptors(map, candidate.keyframe, frame);
-    if (start && searchFrom(candidate.keyframe, *start)) return result;
-  }
+  result.reason = "from no keyframe does the map show in this frame";
+  if (searchFrom(startsByTurning(map, tried), map, current, edges, result)) return result;
+  searchFrom(startsByDescriptors(map, tried, current, edges), map, current, edges, result);
   return result;
 }
 

@@ -33,7 +33,7 @@ struct RelocalisationResult {
   PoseResult pose;                    // covariance; inliers by match before outliers were taken out
   KeyframeId keyframe = -1;           // the candidate that led there
   std::vector<MatchedPoint> matches;  // the map points that agree with the pose
-  int visible = 0;                    // map points around the keyframe that should be in view
+  PoseEvidence evidence;              // what spoke for the pose
 };
 
 // Keeps what relocalisation needs of each keyframe.
@@ -60,8 +60,17 @@ class Relocalisation {
     KeyframeId keyframe = -1;
     ThumbnailMatch match;
   };
+  struct Start {
+    KeyframeId keyframe = -1;
+    Pose world_T_camera;
+  };
 
   std::vector<Candidate> candidates(const Map& map, const Thumbnail& thumbnail) const;
+  std::vector<Start> startsByTurning(const Map& map, const std::vector<Candidate>& candidates) const;
+  std::vector<Start> startsByDescriptors(const Map& map, const std::vector<Candidate>& candidates,
+                                         const FrameImages& current, const EdgeMap& edges) const;
+  bool searchFrom(const std::vector<Start>& starts, const Map& map, const FrameImages& current, const EdgeMap& edges,
+                  RelocalisationResult& result) const;
   std::optional<Pose> poseByDescriptors(const Map& map, KeyframeId keyframe, const DescribedPoints& frame) const;
 
   Camera camera_;

@@ -1,0 +1,139 @@
+#include "adjustment/pose_graph.h"
+
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace edgeslam {
+namespace {
+
+// A node as Ceres sees it: rotation vector relative to where it started, translation, logarithm of the scale relative
+// to where it started. Seven numbers for seven unknowns.
+using NodeParameters = std::array<double, 7>;
+
+template <class T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Quaternion = Eigen::Quaternion<T>;
+
+template <class T>
+Quaternion<T> rotationOf(const Eigen::Quaterniond& start, const T* parameters) {
+  T step[4];
+  ceres::AngleAxisToQuaternion(parameters, step);
+  return start.cast<T>() * Quaternion<T>(step[0], step[1], step[2], step[3]);
+}
+
+// Error of an edge: from_S_to (measured), inverted, times from_S_to (of the nodes), as seven numbers.
+struct EdgeCost {
+  EdgeCost(const PoseGraph& graph, const PoseGraphEdge& edge)
+      : from(graph.nodes[static_cast<std::size_t>(edge.from)].world_S_node),
+        to(graph.nodes[static_cast<std::size_t>(edge.to)].world_S_node),
+        to_S_from(edge.from_S_to.inverse()),
+        weight(edge.weight),
+        length(graph.length) {}
+
+  template <class T>
+  bool operator()(const T* from_parameters, const T* to_parameters, T* residuals) const {
+    const Quaternion<T> world_R_from = rotationOf(from.rotation, from_parameters);
+    const Quaternion<T> world_R_to = rotationOf(to.rotation, to_parameters);
+    const Vector3<T> from_t(from_parameters[3], from_parameters[4], from_parameters[5]);
+    const Vector3<T> to_t(to_parameters[3], to_parameters[4], to_parameters[5]);
+    const T from_log_scale = T(std::log(from.scale)) + from_parameters[6];
+    const T to_log_scale = T(std::log(to.scale)) + to_parameters[6];
+
+    const Quaternion<T> from_R_world = world_R_from.conjugate();
+    const Quaternion<T> from_R_to = from_R_world * world_R_to;
+    const Vector3<T> from_t_to = (from_R_world * (to_t - from_t)) * exp(-from_log_scale);
+    const Quaternion<T> measured = to_S_from.rotation.cast<T>();
+    const Quaternion<T> turn = measured * from_R_to;
+    const Vector3<T> shift = T(to_S_from.scale) * (measured * from_t_to) + to_S_from.translation.cast<T>();
+
+    const T turn_wxyz[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
+    ceres::QuaternionToAngleAxis(turn_wxyz, residuals);
+    for (int i = 0; i < 3; ++i) residuals[3 + i] = shift[i] / T(length);
+    residuals[6] = T(std::log(to_S_from.scale)) + to_log_scale - from_log_scale;
+    for (int i = 0; i < 7; ++i) residuals[i] *= T(weight);
+    return true;
+  }
+
+  Similarity from, to;   // where the nodes started
+  Similarity to_S_from;  // measured
+  double weight, length;
+};
+
+bool finite(const Similarity& similarity) {
+  return std::isfinite(similarity.scale) && similarity.scale > 0 && similarity.rotation.coeffs().allFinite() &&
+         similarity.translation.allFinite();
+}
+
+bool wellPosed(const PoseGraph& graph) {
+  const int nodes = static_cast<int>(graph.nodes.size());
+  if (!(graph.length > 0 && std::isfinite(graph.length))) return false;
+  bool any_fixed = false;
+  for (const PoseGraphNode& node : graph.nodes) {
+    if (!finite(node.world_S_node)) return false;
+    any_fixed = any_fixed || node.fixed;
+  }
+  for (const PoseGraphEdge& edge : graph.edges) {
+    if (edge.from < 0 || edge.from >= nodes || edge.to < 0 || edge.to >= nodes || edge.from == edge.to) return false;
+    if (!finite(edge.from_S_to) || !(edge.weight > 0 && std::isfinite(edge.weight))) return false;
+  }
+  return any_fixed && !graph.edges.empty();
+}
+
+Similarity similarityOf(const Similarity& start, const NodeParameters& parameters) {
+  const Eigen::Vector3d rotation_vector(parameters[0], parameters[1], parameters[2]);
+  return {start.scale * std::exp(parameters[6]),
+          (start.rotation * rotationExp(rotation_vector)).normalized(),
+          {parameters[3], parameters[4], parameters[5]}};
+}
+
+}  // namespace
+
+PoseGraphResult optimisePoseGraph(PoseGraph& graph, int iterations) {
+  PoseGraphResult result;
+  if (!wellPosed(graph)) return result;
+  std::vector<NodeParameters> parameters;
+  for (const PoseGraphNode& node : graph.nodes) {
+    const Eigen::Vector3d& t = node.world_S_node.translation;
+    parameters.push_back({0, 0, 0, t.x(), t.y(), t.z(), 0});
+  }
+  ceres::Problem problem;
+  for (const PoseGraphEdge& edge : graph.edges) {
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<EdgeCost, 7, 7, 7>(new EdgeCost(graph, edge)), nullptr,
+                             parameters[static_cast<std::size_t>(edge.from)].data(),
+                             parameters[static_cast<std::size_t>(edge.to)].data());
+  }
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    if (graph.nodes[i].fixed && problem.HasParameterBlock(parameters[i].data())) {
+      problem.SetParameterBlockConstant(parameters[i].data());
+    }
+  }
+  ceres::Solver::Options options;
+  options.max_num_iterations = iterations;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.num_threads = 1;
+  options.function_tolerance = 1e-8;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  result.initial_cost = summary.initial_cost;
+  result.final_cost = summary.final_cost;
+  result.iterations = static_cast<int>(summary.iterations.size()) - 1;
+
+  std::vector<Similarity> optimised;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    optimised.push_back(similarityOf(graph.nodes[i].world_S_node, parameters[i]));
+  }
+  if (!summary.IsSolutionUsable() || !std::all_of(optimised.begin(), optimised.end(), finite)) return result;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    if (!graph.nodes[i].fixed) graph.nodes[i].world_S_node = optimised[i];
+  }
+  result.usable = true;
+  return result;
+}
+
+}  // namespace edgeslam

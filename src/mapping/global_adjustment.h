@@ -1,0 +1,18 @@
+// P20: bundle adjustment of all keyframes and points.
+#pragma once
+
+#include "mapping/local_adjustment.h"
+
+namespace edgeslam {
+
+struct GlobalAdjustmentOptions {
+  BundleOptions bundle{10, 2.0};
+};
+
+// Adjusts the whole map; takes out outliers and points that lost their depth, as `local` says. Keyframe 0 stays where
+// it is, and so does the map's size: the root mean square distance of the other keyframes from it. False where the
+// solver failed or there are fewer than 2 keyframes (the map is then as it was).
+bool adjustGlobally(const Camera& camera, const GlobalAdjustmentOptions& options, const LocalAdjustmentOptions& local,
+                    Map& map);
+
+}  // namespace edgeslam

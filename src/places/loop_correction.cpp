@@ -1,0 +1,148 @@
+#include "places/loop_correction.h"
+
+#include <algorithm>
+
+#include "adjustment/pose_graph.h"
+#include "adjustment/reprojection.h"
+
+namespace edgeslam {
+namespace {
+
+const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[static_cast<std::size_t>(id)]; }
+
+Similarity similarityOf(const Pose& pose) { return {1, pose.rotation, pose.translation}; }
+
+double medianDistance(const PlaceView& view) {
+  std::vector<double> distances;
+  for (const PlacePoint& point : view.points) distances.push_back(point.position.norm());
+  if (distances.empty()) return 1;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+// Keyframes that follow each other or share points are held as they are, and the loop as it was found.
+PoseGraph graphOf(const Map& map, KeyframeId current, KeyframeId candidate, const Similarity& current_S_candidate,
+                  double length, const LoopCorrectionOptions& options) {
+  PoseGraph graph;
+  graph.length = length;
+  for (const Keyframe& keyframe : map.keyframes) {
+    graph.nodes.push_back({similarityOf(keyframe.world_T_camera), keyframe.id == 0});
+  }
+  for (const Keyframe& keyframe : map.keyframes) {
+    const std::vector<int> shared = sharedPoints(map, keyframe.id);
+    for (KeyframeId other = 0; other < keyframe.id; ++other) {
+      const bool consecutive = other + 1 == keyframe.id;
+      if (!consecutive && shared[static_cast<std::size_t>(other)] < options.covisible_points) continue;
+      const Pose from_T_to = keyframeOf(map, other).world_T_camera.inverse() * keyframe.world_T_camera;
+      graph.edges.push_back({other, keyframe.id, similarityOf(from_T_to), 1.0});
+    }
+  }
+  graph.edges.push_back({current, candidate, current_S_candidate, options.loop_weight});
+  return graph;
+}
+
+PointObservation observationOf(const Camera& camera, PointId point, bool corner, const Measurement& measurement) {
+  PointObservation observation;
+  observation.point = point;
+  observation.measurement = measurement;
+  observation.bearing = bearing(camera, measurement.pixel);
+  observation.corner = corner;
+  return observation;
+}
+
+// Points of the old side, looked for in a neighbour of the current keyframe.
+void observeInNeighbour(const Camera& camera, const Map& map, const PlaceView& old_side, const Pose& neighbour_T_old,
+                        const Keyframe& neighbour, const LoopVerification& loop, double largest_move,
+                        const GuidedMatchingOptions& guided, std::vector<LoopCorrection::Observation>& observations) {
+  std::vector<PointId> found_before;
+  for (const auto& found : loop.found) found_before.push_back(found.candidate_point);
+  std::sort(found_before.begin(), found_before.end());
+  for (const PlacePoint& point : old_side.points) {
+    // Only points that agree with the similarity: merging is for those that meet.
+    if (!std::binary_search(found_before.begin(), found_before.end(), point.id)) continue;
+    if (findObservation(neighbour, point.id)) continue;
+    Measurement measured;
+    if (!predictMeasurement(camera, neighbour_T_old, point.position, point.measurement, measured)) continue;
+    if (!insideImage(camera, measured.pixel, 8)) continue;
+    if (!findByPatch(camera, map, old_side, point, neighbour_T_old, *neighbour.images, largest_move, guided,
+                     measured)) {
+      continue;
+    }
+    observations.push_back({neighbour.id, observationOf(camera, point.id, point.corner, measured)});
+  }
+}
+
+}  // namespace
+
+bool computeCorrection(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
+                       const LoopVerification& loop, const LoopVerificationOptions& verification,
+                       const LoopCorrectionOptions& options, LoopCorrection& correction) {
+  correction = {};
+  const PlaceView old_side = placeView(camera, map, candidate, verification.neighbours);
+  PoseGraph graph = graphOf(map, current, candidate, loop.current_S_candidate, medianDistance(old_side), options);
+  if (!optimisePoseGraph(graph, options.iterations).usable) return false;
+
+  correction.current = current;
+  correction.candidate = candidate;
+  for (const Keyframe& keyframe : map.keyframes) {
+    const Similarity& corrected = graph.nodes[static_cast<std::size_t>(keyframe.id)].world_S_node;
+    correction.new_world_S_world.push_back(corrected * similarityOf(keyframe.world_T_camera).inverse());
+  }
+
+  for (const auto& found : loop.found) {
+    if (findObservation(keyframeOf(map, current), found.candidate_point)) continue;
+    const auto point = map.points.find(found.candidate_point);
+    if (point == map.points.end()) continue;
+    correction.observations.push_back(
+        {current, observationOf(camera, found.candidate_point, point->second.corner, found.measurement)});
+  }
+  const Similarity old_S_current = loop.current_S_candidate.inverse();
+  for (const KeyframeId id : covisibleWith(map, current, options.neighbours)) {
+    const Keyframe& neighbour = keyframeOf(map, id);
+    if (!neighbour.images || id == candidate) continue;
+    const Similarity current_S_neighbour =
+        similarityOf(keyframeOf(map, current).world_T_camera.inverse() * neighbour.world_T_camera);
+    const Pose neighbour_T_old = upToScale((old_S_current * current_S_neighbour).inverse());
+    observeInNeighbour(camera, map, old_side, neighbour_T_old, neighbour, loop, options.largest_move,
+                       verification.guided, correction.observations);
+  }
+  std::stable_sort(correction.observations.begin(), correction.observations.end(),
+                   [](const LoopCorrection::Observation& a, const LoopCorrection::Observation& b) {
+                     return a.keyframe != b.keyframe ? a.keyframe < b.keyframe
+                                                     : a.observation.point < b.observation.point;
+                   });
+  return true;
+}
+
+void applyCorrection(const LoopCorrection& correction, Map& map) {
+  if (correction.new_world_S_world.empty()) return;
+  const auto& moves = correction.new_world_S_world;
+  const auto moveOf = [&](KeyframeId id) -> const Similarity& {
+    return moves[std::min(static_cast<std::size_t>(id), moves.size() - 1)];
+  };
+  for (Keyframe& keyframe : map.keyframes) {
+    const Similarity& move = moveOf(keyframe.id);
+    keyframe.world_T_camera = {(move.rotation * keyframe.world_T_camera.rotation).normalized(),
+                               move * keyframe.world_T_camera.translation};
+  }
+  for (auto& [id, point] : map.points) {
+    const double scale = moveOf(point.host).scale;
+    point.inverse_depth /= scale;
+    point.inverse_depth_sigma /= scale;
+  }
+  for (const auto& [id, observation] : correction.observations) {
+    if (static_cast<std::size_t>(id) >= map.keyframes.size()) continue;
+    const auto point = map.points.find(observation.point);
+    if (point == map.points.end() || point->second.host == id) continue;
+    Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
+    const auto place = std::lower_bound(keyframe.observations.begin(), keyframe.observations.end(), observation.point,
+                                        [](const PointObservation& o, PointId wanted) { return o.point < wanted; });
+    if (place != keyframe.observations.end() && place->point == observation.point) continue;
+    keyframe.observations.insert(place, observation);
+    std::vector<KeyframeId>& seen_in = point->second.seen_in;
+    seen_in.insert(std::lower_bound(seen_in.begin(), seen_in.end(), id), id);
+  }
+}
+
+}  // namespace edgeslam
