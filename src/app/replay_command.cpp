@@ -1,8 +1,7 @@
 #include "app/replay_command.h"
 
-#include <unistd.h>
-
 #include <ceres/version.h>
+#include <unistd.h>
 
 #include <Eigen/Core>
 #include <chrono>
@@ -32,7 +31,8 @@ struct ReplayArguments {
 // "frame 120 of 780, tracking, 3.1 x real time": rewritten in place on a terminal, a line every ten seconds elsewhere.
 class Progress {
  public:
-  explicit Progress(std::int64_t total) : total_(total), terminal_(isatty(STDERR_FILENO) == 1), start_(now()), last_(start_) {}
+  explicit Progress(std::int64_t total)
+      : total_(total), terminal_(isatty(STDERR_FILENO) == 1), start_(now()), last_(start_) {}
 
   void show(const FrameRecord& frame, std::int64_t count, double sequence_s) {
     const double elapsed = now() - last_;
@@ -67,7 +67,9 @@ class Progress {
 Camera cameraOf(const FrameSource& source, const Configuration& configuration, const std::string& input) {
   if (configuration.camera) return *configuration.camera;
   if (source.camera()) return *source.camera();
-  throw InputError(input + ": no calibration: put a camera.yaml beside the frames, or give one in the configuration (camera.calibration)");
+  throw InputError(
+      input +
+      ": no calibration: put a camera.yaml beside the frames, or give one in the configuration (camera.calibration)");
 }
 
 RunDescription describe(const ReplayArguments& arguments, const Configuration& configuration) {
@@ -80,12 +82,13 @@ RunDescription describe(const ReplayArguments& arguments, const Configuration& c
   description.program_version = EDGESLAM_VERSION;
   description.library_versions["OpenCV"] = CV_VERSION;
   description.library_versions["Ceres"] = CERES_VERSION_STRING;
-  description.library_versions["Eigen"] = std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
-                                          "." + std::to_string(EIGEN_MINOR_VERSION);
+  description.library_versions["Eigen"] = std::to_string(EIGEN_WORLD_VERSION) + "." +
+                                          std::to_string(EIGEN_MAJOR_VERSION) + "." +
+                                          std::to_string(EIGEN_MINOR_VERSION);
   description.configuration = formatConfiguration(configuration);
   description.command_line = "edgeslam replay " + arguments.input +
-                             (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) + " --output " +
-                             arguments.output;
+                             (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
+                             " --output " + arguments.output;
   return description;
 }
 
@@ -99,7 +102,8 @@ RunResult runAll(FrameSource& source, const Camera& camera, const Settings& sett
     std::string problem = frame->problem;
     if (problem.empty() && (frame->grey.cols != camera.width || frame->grey.rows != camera.height)) {
       problem = "image of " + std::to_string(frame->grey.cols) + " x " + std::to_string(frame->grey.rows) +
-                " pixels, the calibration is for " + std::to_string(camera.width) + " x " + std::to_string(camera.height);
+                " pixels, the calibration is for " + std::to_string(camera.width) + " x " +
+                std::to_string(camera.height);
     }
     if (!problem.empty()) {
       progress.end();
@@ -126,10 +130,12 @@ void tell(const RunResult& result, const std::optional<Trajectory>& ground_truth
     ++posed;
     estimate.push_back({frames[i].time_ns, frames[i].final_world_T_camera});
   }
-  const double seconds = frames.empty() ? 0 : static_cast<double>(frames.back().time_ns - frames.front().time_ns) * 1e-9;
+  const double seconds =
+      frames.empty() ? 0 : static_cast<double>(frames.back().time_ns - frames.front().time_ns) * 1e-9;
   std::printf("%zu frames (%.1f s) in %.1f s: %.2f x real time\n", frames.size(), seconds, result.wall_s,
               seconds / std::max(1e-9, result.wall_s));
-  if (result.unreadable_frames > 0) std::printf("%lld frames could not be read and were skipped\n", static_cast<long long>(result.unreadable_frames));
+  if (result.unreadable_frames > 0)
+    std::printf("%lld frames could not be read and were skipped\n", static_cast<long long>(result.unreadable_frames));
   if (posed == 0) {
     std::printf("no pose: %s\n", frames.empty() ? "no frame" : frames.back().reason.c_str());
     return;
@@ -171,10 +177,12 @@ int runReplay(const ReplayArguments& arguments) {
 
 void addReplayCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReplayArguments>();
-  CLI::App* command = app.add_subcommand("replay", "Run over recorded frames: trajectory, map, error figures and a report");
-  command->add_option("INPUT", arguments->input,
-                      "TUM RGB-D, ICL-NUIM or EuRoC folder, folder with a video and times.txt, folder of images named by "
-                      "time stamp, or video file")
+  CLI::App* command =
+      app.add_subcommand("replay", "Run over recorded frames: trajectory, map, error figures and a report");
+  command
+      ->add_option("INPUT", arguments->input,
+                   "TUM RGB-D, ICL-NUIM or EuRoC folder, folder with a video and times.txt, folder of images named by "
+                   "time stamp, or video file")
       ->required();
   command->add_option("--config", arguments->configuration, "Configuration file (YAML); without it the defaults");
   command->add_option("--output", arguments->output, "Folder for the results")->capture_default_str();

@@ -1,4 +1,5 @@
-// `edgeslam replay`: the main job. Frames from a folder or video go in; trajectory, map, error figures and a report come out.
+// `edgeslam replay`: the main job. Frames from a folder or video go in; trajectory, map, error figures and a report
+// come out.
 #pragma once
 
 #include <CLI/CLI.hpp>

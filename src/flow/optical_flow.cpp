@@ -18,14 +18,16 @@ AlignmentOptions alignmentOptions(const FlowOptions& options) {
 FlowMatch followPoint(const ImagePyramid& from, const ImagePyramid& to, const Eigen::Vector2f& pixel,
                       const Eigen::Vector2f& prediction, const FlowOptions& options) {
   const AlignmentOptions alignment = alignmentOptions(options);
-  const int coarsest = std::min({options.levels, static_cast<int>(from.levels.size()), static_cast<int>(to.levels.size())}) - 1;
+  const int coarsest =
+      std::min({options.levels, static_cast<int>(from.levels.size()), static_cast<int>(to.levels.size())}) - 1;
   FlowMatch match;
   Eigen::Vector2f estimate = prediction;
   PatchTemplate patch;
   for (int level = coarsest; level >= 0; --level) {
     const float scale = 1.0f / static_cast<float>(1 << level);
     const auto index = static_cast<std::size_t>(level);
-    const bool taken = makeTemplate(from.levels[index], pixel * scale, Eigen::Matrix2f::Identity(), options.window, patch);
+    const bool taken =
+        makeTemplate(from.levels[index], pixel * scale, Eigen::Matrix2f::Identity(), options.window, patch);
     if (!taken) {
       if (level == 0) return match;
       continue;

@@ -7,14 +7,14 @@
 namespace edgeslam {
 
 struct FlowOptions {
-  int window = 15;                    // side of the patch [px]
-  int levels = 4;                     // pyramid levels
-  int iterations = 10;                // most steps a level
-  double damping = 3;                 // Levenberg term towards the prediction [grey^2/px^2]
-  double forward_backward = 1.0;      // largest error of going there and back, across the edge [px]
-  double least_correlation = 0.7;     // normalized cross-correlation of the patch there
-  double edge_distance = 1.5;         // a point farther from every edge of its direction is dropped [px]
-  double redundancy = 1.5;            // of two points nearer to each other the younger is dropped [px]
+  int window = 15;                 // side of the patch [px]
+  int levels = 4;                  // pyramid levels
+  int iterations = 10;             // most steps a level
+  double damping = 3;              // Levenberg term towards the prediction [grey^2/px^2]
+  double forward_backward = 1.0;   // largest error of going there and back, across the edge [px]
+  double least_correlation = 0.7;  // normalized cross-correlation of the patch there
+  double edge_distance = 1.5;      // a point farther from every edge of its direction is dropped [px]
+  double redundancy = 1.5;         // of two points nearer to each other the younger is dropped [px]
 };
 
 struct FlowMatch {
@@ -24,7 +24,8 @@ struct FlowMatch {
   float correlation = 0;
 };
 
-// Follows the patch around `pixel` in `from` into `to`, from the coarsest level down to level 0, starting at `prediction`.
+// Follows the patch around `pixel` in `from` into `to`, from the coarsest level down to level 0, starting at
+// `prediction`.
 FlowMatch followPoint(const ImagePyramid& from, const ImagePyramid& to, const Eigen::Vector2f& pixel,
                       const Eigen::Vector2f& prediction, const FlowOptions& options);
 

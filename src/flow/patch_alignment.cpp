@@ -19,7 +19,8 @@ float sampleBilinear(const cv::Mat& image, float x, float y) {
   const float x_floor = std::floor(x), y_floor = std::floor(y);
   const float a = x - x_floor, b = y - y_floor;
   const auto step = static_cast<std::ptrdiff_t>(image.step[0]);
-  const unsigned char* p = image.data + static_cast<std::ptrdiff_t>(y_floor) * step + static_cast<std::ptrdiff_t>(x_floor);
+  const unsigned char* p =
+      image.data + static_cast<std::ptrdiff_t>(y_floor) * step + static_cast<std::ptrdiff_t>(x_floor);
   return (1 - b) * ((1 - a) * static_cast<float>(p[0]) + a * static_cast<float>(p[1])) +
          b * ((1 - a) * static_cast<float>(p[step]) + a * static_cast<float>(p[step + 1]));
 }
@@ -42,7 +43,8 @@ void sampleWindow(const cv::Mat& image, const Eigen::Vector2f& centre, int side,
   }
 }
 
-void sampleWarped(const cv::Mat& image, const Eigen::Vector2f& centre, const Eigen::Matrix2f& warp, int side, float* samples) {
+void sampleWarped(const cv::Mat& image, const Eigen::Vector2f& centre, const Eigen::Matrix2f& warp, int side,
+                  float* samples) {
   const int radius = side / 2;
   for (int y = -radius; y <= radius; ++y) {
     for (int x = -radius; x <= radius; ++x) {
@@ -109,7 +111,8 @@ AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, con
   AlignmentResult result;
   result.pixel = start;
   PatchTemplate::Samples samples(patch.grey.size());
-  // Of two variances of a tenth grey value squared: on flat patches the correlation would be rounding errors over nothing.
+  // Of two variances of a tenth grey value squared: on flat patches the correlation would be rounding errors over
+  // nothing.
   const float least_square = 0.01f * count * count;
   const auto radius = static_cast<float>(patch.side / 2);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
@@ -118,7 +121,8 @@ AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, con
     const float sum = samples.sum(), square = samples.squaredNorm(), product = patch.grey.dot(samples);
     const float variance = square - sum * sum / count;
     result.correlation = product / std::sqrt(std::max(least_square, variance * patch.normal_matrix(2, 2)));
-    // Normal equations of T(x + delta) (1 + gain) + bias = I(x + pixel); the template's terms have no mean, so the bias drops out.
+    // Normal equations of T(x + delta) (1 + gain) + bias = I(x + pixel); the template's terms have no mean, so the bias
+    // drops out.
     const Eigen::Vector2f pull = damping * (result.pixel - prediction);
     const Eigen::Vector3f right(patch.gradient_x.dot(samples) - patch.normal_matrix(0, 2) + pull.x(),
                                 patch.gradient_y.dot(samples) - patch.normal_matrix(1, 2) + pull.y(),

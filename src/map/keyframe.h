@@ -13,8 +13,8 @@
 
 namespace edgeslam {
 
-using KeyframeId = int;         // counted from 0, also the index in Map::keyframes
-using PointId = std::int64_t;   // of a track, and of the map point that it becomes
+using KeyframeId = int;        // counted from 0, also the index in Map::keyframes
+using PointId = std::int64_t;  // of a track, and of the map point that it becomes
 
 // The images of a frame; shared, never changed once made.
 struct FrameImages {
@@ -29,19 +29,19 @@ struct PointObservation {
   Measurement measurement;
   Eigen::Vector3d bearing = Eigen::Vector3d::UnitZ();  // unit, camera frame, of the measurement's pixel
   bool corner = false;
-  int chain = -1;            // of the edge on which it was chosen, in the frame where it was chosen
-  int order = 0;             // place along that chain
+  int chain = -1;  // of the edge on which it was chosen, in the frame where it was chosen
+  int order = 0;   // place along that chain
 };
 
 // A frame on its way to mapping: every frame while there is no map, keyframes afterwards.
 struct TrackedFrame {
   std::int64_t frame_index = 0;
   std::int64_t time_ns = 0;
-  Pose world_T_camera;          // as tracking estimated it
+  Pose world_T_camera;  // as tracking estimated it
   std::vector<PointObservation> observations;
   std::shared_ptr<const FrameImages> images;
-  KeyframeId keyframe = -1;     // its number, or -1 for a frame that only helps the initialisation
-  std::string reason;           // which criterion made it a keyframe
+  KeyframeId keyframe = -1;  // its number, or -1 for a frame that only helps the initialisation
+  std::string reason;        // which criterion made it a keyframe
 };
 
 struct Keyframe {

@@ -1,5 +1,5 @@
-// The map: keyframes and points of image edges. A point is its host keyframe, the bearing there and one unknown, the inverse
-// distance along it (design, section 5). Mapping owns it; tracking sees a MapView.
+// The map: keyframes and points of image edges. A point is its host keyframe, the bearing there and one unknown, the
+// inverse distance along it (design, section 5). Mapping owns it; tracking sees a MapView.
 #pragma once
 
 #include <map>
@@ -12,13 +12,13 @@ namespace edgeslam {
 struct MapPoint {
   PointId id = 0;
   KeyframeId host = 0;
-  Eigen::Vector3d host_bearing;       // unit, host camera frame
-  double inverse_depth = 0;           // 1 / distance along the bearing [1 / map unit]
-  double inverse_depth_sigma = 0;     // standard deviation
+  Eigen::Vector3d host_bearing;    // unit, host camera frame
+  double inverse_depth = 0;        // 1 / distance along the bearing [1 / map unit]
+  double inverse_depth_sigma = 0;  // standard deviation
   bool corner = false;
-  int chain = -1;                     // of the host keyframe's edges
+  int chain = -1;  // of the host keyframe's edges
   int order = 0;
-  std::vector<KeyframeId> seen_in;    // keyframes other than the host, ascending
+  std::vector<KeyframeId> seen_in;  // keyframes other than the host, ascending
 };
 
 struct Map {
@@ -28,7 +28,8 @@ struct Map {
 
 // Position in the world frame.
 inline Eigen::Vector3d worldPosition(const Map& map, const MapPoint& point) {
-  return map.keyframes[static_cast<std::size_t>(point.host)].world_T_camera * (point.host_bearing / point.inverse_depth);
+  return map.keyframes[static_cast<std::size_t>(point.host)].world_T_camera *
+         (point.host_bearing / point.inverse_depth);
 }
 
 // The observation of a point in a keyframe, or null.

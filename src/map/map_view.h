@@ -20,11 +20,11 @@ struct ViewPoint {
 
 struct MapView {
   std::uint64_t version = 0;
-  std::int64_t origin_frame = -1;     // frame of keyframe 0: a view of an attempt that was given up is told by it
-  bool initialised = false;           // false: a provisional, flat-depth map from the first frame; poses are not given out
-  std::string waiting_for;            // why not, in words that a user understands
-  std::vector<Pose> keyframe_poses;   // world_T_camera, index is the keyframe
-  std::vector<ViewPoint> points;      // sorted by id
+  std::int64_t origin_frame = -1;  // frame of keyframe 0: a view of an attempt that was given up is told by it
+  bool initialised = false;        // false: a provisional, flat-depth map from the first frame; poses are not given out
+  std::string waiting_for;         // why not, in words that a user understands
+  std::vector<Pose> keyframe_poses;  // world_T_camera, index is the keyframe
+  std::vector<ViewPoint> points;     // sorted by id
 };
 
 inline const ViewPoint* findPoint(const MapView& view, PointId id) {
@@ -37,8 +37,8 @@ inline Eigen::Vector3d worldPosition(const MapView& view, const ViewPoint& point
   return view.keyframe_poses[static_cast<std::size_t>(point.host)] * (point.host_bearing / point.inverse_depth);
 }
 
-// Standard deviation of the inverse depths of a flat start, whose mean is 1: small, since it is their common depth that keeps
-// rotation and translation apart where a scene has lines only.
+// Standard deviation of the inverse depths of a flat start, whose mean is 1: small, since it is their common depth that
+// keeps rotation and translation apart where a scene has lines only.
 constexpr double flat_start_sigma = 0.05;
 
 // A provisional map: every point of the first frame at the distance 1 (design, section 5: initialisation).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "adjustment/pose_adjustment.h"
@@ -18,6 +19,12 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+std::string shortNumber(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2f", value);
+  return text;
 }
 
 // Calls visit(index in first, index in other) for each point seen in both; both are sorted by point.
@@ -59,45 +66,60 @@ bool Initialisation::add(const TrackedFrame& frame) {
 }
 
 bool Initialisation::attempt() {
-  InitialStructure best = flatStart();
+  InitialStructure best = followedStart();
+  if (reasonToWait(best).empty()) {
+    // A structure of lines can stand wrong and look well: before it is believed, others from quite different starts
+    // must fit the same measurements worse. Most of them fall into the same solution where that is the right one.
+    for (InitialStructure& rival : rivals()) {
+      if (rival.usable && (!best.usable || rival.error < best.error)) best = std::move(rival);
+    }
+  }
   if (best.usable) {
     inverse_depths_ = best.inverse_depths;
     depth_sigmas_ = best.depth_sigmas;
-    for (std::size_t i = 0; i < best.frames.size(); ++i) frames_[best.frames[i]].world_T_camera = best.first_T_camera[i];
+    for (std::size_t i = 0; i < best.frames.size(); ++i)
+      frames_[best.frames[i]].world_T_camera = best.first_T_camera[i];
     changed_ = true;
-  }
-  const auto corners = std::count_if(frames_.back().observations.begin(), frames_.back().observations.end(),
-                                     [](const PointObservation& o) { return o.corner; });
-  if (corners >= options_.five_point_corners) {
-    InitialStructure other = fivePointStart();
-    if (other.usable && (!best.usable || other.quality.kept > best.quality.kept)) best = std::move(other);
   }
   waiting_for_ = reasonToWait(best);
   if (!waiting_for_.empty()) return false;
   accepted_ = std::move(best);
   description_ = accepted_.method + " from frame " + std::to_string(first_.frame_index) + " to frame " +
-                 std::to_string(frames_.back().frame_index) + ", quality " + std::to_string(accepted_.quality.kept) + " of " +
-                 std::to_string(accepted_.quality.pieces) + " pieces, parallax " + std::to_string(accepted_.parallax_deg) +
-                 " deg, " + std::to_string(accepted_.points) + " points";
+                 std::to_string(frames_.back().frame_index) + ", quality " + std::to_string(accepted_.quality.kept) +
+                 " of " + std::to_string(accepted_.quality.pieces) + " edge pieces, parallax " +
+                 shortNumber(accepted_.parallax_deg) + " deg, " + std::to_string(accepted_.points) + " points";
   return true;
+}
+
+std::vector<InitialStructure> Initialisation::rivals() const {
+  std::vector<InitialStructure> structures;
+  const auto corners = std::count_if(frames_.back().observations.begin(), frames_.back().observations.end(),
+                                     [](const PointObservation& o) { return o.corner; });
+  if (corners >= options_.five_point_corners) structures.push_back(fivePointStart());
+  structures.push_back(directionStart({0, 0, 1}, "forward"));
+  structures.push_back(directionStart({1, 0, 0}, "rightward"));
+  structures.push_back(directionStart({-1, 0, 0}, "leftward"));
+  structures.push_back(directionStart({0, 1, 0}, "downward"));
+  structures.push_back(directionStart({0, -1, 0}, "upward"));
+  return structures;
 }
 
 std::string Initialisation::reasonToWait(const InitialStructure& structure) const {
   if (!structure.usable) return "the adjustment of the first frames failed";
   if (structure.parallax_deg < options_.least_parallax_deg) {
-    return "too little parallax (" + std::to_string(structure.parallax_deg).substr(0, 4) + " deg)";
+    return "too little parallax (" + shortNumber(structure.parallax_deg) + " deg)";
   }
   const double enough = std::min<double>(options_.fewest_points, options_.point_share * structure.followed);
   if (structure.points < enough) return "too few points with a good depth (" + std::to_string(structure.points) + ")";
   if (structure.quality.share() < options_.least_quality) {
-    return "quality too low (" + std::to_string(structure.quality.kept) + " of " + std::to_string(structure.quality.pieces) +
-           " edge pieces hold)";
+    return "quality too low (" + std::to_string(structure.quality.kept) + " of " +
+           std::to_string(structure.quality.pieces) + " edge pieces hold)";
   }
   return "";
 }
 
 // What tracking followed against the flat map, freed and adjusted.
-InitialStructure Initialisation::flatStart() const {
+InitialStructure Initialisation::followedStart() const {
   InitialStructure structure;
   structure.method = "flat start";
   structure.frames = chooseFrames();
@@ -106,7 +128,8 @@ InitialStructure Initialisation::flatStart() const {
   return adjust(std::move(structure));
 }
 
-// P14: the pose of the current frame by the five-point algorithm, depths by triangulation, the frames between by their points.
+// P14: the pose of the current frame by the five-point algorithm, depths by triangulation, the frames between by their
+// points.
 InitialStructure Initialisation::fivePointStart() const {
   InitialStructure structure;
   structure.method = "five-point";
@@ -132,7 +155,8 @@ InitialStructure Initialisation::fivePointStart() const {
   });
   if (depths.size() < 20) return structure;
   const double scale = median(depths);  // brings the median inverse depth to 1
-  for (double& inverse_depth : structure.inverse_depths) inverse_depth = inverse_depth > 0 ? inverse_depth / scale : 1.0;
+  for (double& inverse_depth : structure.inverse_depths)
+    inverse_depth = inverse_depth > 0 ? inverse_depth / scale : 1.0;
 
   Pose last_first_T_camera;
   const Pose current_first_T_camera = [&] {
@@ -156,6 +180,50 @@ InitialStructure Initialisation::fivePointStart() const {
     structure.first_T_camera.push_back(pose.world_T_camera);
     last_first_T_camera = pose.world_T_camera;
   }
+  return adjust(std::move(structure));
+}
+
+// A camera that moved steadily in one direction of the first frame, turning as the points' bearings say; depths by
+// triangulation.
+InitialStructure Initialisation::directionStart(const Eigen::Vector3d& direction, const char* name) const {
+  InitialStructure structure;
+  structure.method = std::string(name) + " start";
+  structure.frames = chooseFrames();
+  std::vector<double> lengths;
+  for (const std::size_t k : structure.frames) {
+    std::vector<Eigen::Vector3d> first, other;
+    forEachCommon(first_, frames_[k], [&](std::size_t i, std::size_t j) {
+      first.push_back(first_.observations[i].bearing);
+      other.push_back(frames_[k].observations[j].bearing);
+    });
+    if (first.size() < 8) return structure;
+    const RelativeRotation rotation = relativeRotation(first, other);
+    lengths.push_back(rotation.median_error);
+    structure.first_T_camera.push_back(Pose{rotation.rotation.conjugate(), Eigen::Vector3d::Zero()});
+  }
+  for (std::size_t k = 0; k < lengths.size(); ++k) structure.first_T_camera[k].translation = lengths[k] * direction;
+
+  std::vector<std::vector<TriangulationView>> views(first_.observations.size());
+  for (std::size_t k = 0; k < structure.frames.size(); ++k) {
+    const TrackedFrame& frame = frames_[structure.frames[k]];
+    forEachCommon(first_, frame, [&](std::size_t i, std::size_t j) {
+      views[i].push_back({structure.first_T_camera[k].inverse(), frame.observations[j].measurement});
+    });
+  }
+  structure.inverse_depths.assign(first_.observations.size(), 0.0);
+  std::vector<double> depths;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].empty()) continue;
+    const TriangulationResult point = triangulate(camera_, first_.observations[i].bearing, views[i]);
+    if (!point.converged || point.inverse_depth <= 0 || point.sigma > 0.5 * point.inverse_depth) continue;
+    structure.inverse_depths[i] = point.inverse_depth;
+    depths.push_back(point.inverse_depth);
+  }
+  if (depths.size() < 20) return structure;
+  const double scale = median(depths);
+  for (double& inverse_depth : structure.inverse_depths)
+    inverse_depth = inverse_depth > 0 ? inverse_depth / scale : 1.0;
+  for (Pose& pose : structure.first_T_camera) pose.translation *= scale;
   return adjust(std::move(structure));
 }
 
@@ -198,8 +266,10 @@ InitialStructure Initialisation::adjust(InitialStructure structure) const {
   result = adjustBundle(camera_, inliers, options_.bundle);
   if (!result.usable) return structure;
 
-  for (std::size_t k = 0; k < structure.frames.size(); ++k) structure.first_T_camera[k] = inliers.cameras[k + 1].world_T_camera;
+  for (std::size_t k = 0; k < structure.frames.size(); ++k)
+    structure.first_T_camera[k] = inliers.cameras[k + 1].world_T_camera;
   structure.depth_sigmas = result.depth_sigmas;
+  structure.error = boundedError(inliers, problem.observations);
   std::vector<int> seen(first_.observations.size(), 0);
   for (std::size_t k = 0; k < inliers.observations.size(); ++k) {
     if (result.errors[k] < options_.outlier) ++seen[static_cast<std::size_t>(inliers.observations[k].point)];
@@ -211,6 +281,26 @@ InitialStructure Initialisation::adjust(InitialStructure structure) const {
   structure.usable = true;
   judge(structure);
   return structure;
+}
+
+// Of all observations, also those that the adjustment left out: it must not look good by having many outliers.
+double Initialisation::boundedError(const BundleProblem& adjusted,
+                                    const std::vector<BundleObservation>& observations) const {
+  const double bound = options_.outlier * options_.outlier;
+  double sum = 0;
+  for (const BundleObservation& observation : observations) {
+    const BundlePoint& point = adjusted.points[static_cast<std::size_t>(observation.point)];
+    const Pose camera_T_first = adjusted.cameras[static_cast<std::size_t>(observation.camera)].world_T_camera.inverse();
+    const Eigen::Vector3d seen =
+        camera_T_first.rotation * point.host_bearing + point.inverse_depth * camera_T_first.translation;
+    if (!(seen.z() > 0)) {
+      sum += bound;
+      continue;
+    }
+    const Measurement& measurement = observation.measurement;
+    sum += std::min(bound, (whitening(measurement) * (project(camera_, seen) - measurement.pixel)).squaredNorm());
+  }
+  return sum / std::max<double>(1, static_cast<double>(observations.size()));
 }
 
 void Initialisation::judge(InitialStructure& structure) const {
@@ -225,8 +315,8 @@ void Initialisation::judge(InitialStructure& structure) const {
     ++structure.points;
     const Eigen::Vector3d ray = first.bearing / inverse_depth - structure.first_T_camera.back().translation;
     angles.push_back(std::acos(std::clamp(ray.normalized().dot(first.bearing), -1.0, 1.0)) * degrees);
-    quality_points.push_back(
-        {first.measurement.pixel, first.measurement.normal, first.bearing, inverse_depth, sigma, first.chain, first.order});
+    quality_points.push_back({first.measurement.pixel, first.measurement.normal, first.bearing, inverse_depth, sigma,
+                              first.chain, first.order});
   });
   structure.parallax_deg = median(std::move(angles));
   structure.quality = qualityFactor(std::move(quality_points), options_.quality);
@@ -248,7 +338,8 @@ void Initialisation::writeProvisional(MapView& view) const {
   view.points.clear();
   for (std::size_t i = 0; i < first_.observations.size(); ++i) {
     if (inverse_depths_[i] <= 0) continue;
-    view.points.push_back({first_.observations[i].point, 0, first_.observations[i].bearing, inverse_depths_[i], depth_sigmas_[i]});
+    view.points.push_back(
+        {first_.observations[i].point, 0, first_.observations[i].bearing, inverse_depths_[i], depth_sigmas_[i]});
   }
 }
 

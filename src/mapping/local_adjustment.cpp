@@ -21,18 +21,21 @@ std::vector<KeyframeId> covisibleKeyframes(const Map& map, const LocalAdjustment
     return shared[static_cast<std::size_t>(a)] > shared[static_cast<std::size_t>(b)];
   });
   covisible.insert(covisible.begin(), latest);
-  if (static_cast<int>(covisible.size()) > options.free_keyframes) covisible.resize(static_cast<std::size_t>(options.free_keyframes));
+  if (static_cast<int>(covisible.size()) > options.free_keyframes)
+    covisible.resize(static_cast<std::size_t>(options.free_keyframes));
   return covisible;
 }
 
-bool sees(const std::vector<int>& camera_of, KeyframeId keyframe) { return camera_of[static_cast<std::size_t>(keyframe)] >= 0; }
+bool sees(const std::vector<int>& camera_of, KeyframeId keyframe) {
+  return camera_of[static_cast<std::size_t>(keyframe)] >= 0;
+}
 
 // Points that the free keyframes see.
 std::vector<PointId> pointsSeenBy(const Map& map, const std::vector<int>& camera_of) {
   std::vector<PointId> points;
   for (const auto& [id, point] : map.points) {
-    if (sees(camera_of, point.host) || std::any_of(point.seen_in.begin(), point.seen_in.end(),
-                                                   [&](KeyframeId k) { return sees(camera_of, k); })) {
+    if (sees(camera_of, point.host) ||
+        std::any_of(point.seen_in.begin(), point.seen_in.end(), [&](KeyframeId k) { return sees(camera_of, k); })) {
       points.push_back(id);
     }
   }
@@ -47,7 +50,8 @@ void removeOutliers(const std::vector<std::pair<PointId, KeyframeId>>& outliers,
   }
   for (const PointId id : points) {
     const MapPoint& point = map.points.at(id);
-    const bool depth_lost = point.inverse_depth <= 0 || point.inverse_depth_sigma > largest_depth_sigma * point.inverse_depth;
+    const bool depth_lost =
+        point.inverse_depth <= 0 || point.inverse_depth_sigma > largest_depth_sigma * point.inverse_depth;
     if (point.seen_in.empty() || depth_lost) map.points.erase(id);
   }
 }
@@ -70,7 +74,8 @@ bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, 
   std::stable_sort(fixed.begin(), fixed.end(), [&](KeyframeId a, KeyframeId b) {
     return shared[static_cast<std::size_t>(a)] > shared[static_cast<std::size_t>(b)];
   });
-  if (static_cast<int>(fixed.size()) > options.fixed_keyframes) fixed.resize(static_cast<std::size_t>(options.fixed_keyframes));
+  if (static_cast<int>(fixed.size()) > options.fixed_keyframes)
+    fixed.resize(static_cast<std::size_t>(options.fixed_keyframes));
   return adjustKeyframes(camera, options, free, fixed, map);
 }
 
@@ -86,8 +91,8 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   };
   std::vector<KeyframeId> ordered_free = free;
   std::sort(ordered_free.begin(), ordered_free.end());
-  // Keyframe 0 is the world's origin and never moves. With nothing else to hold it, the oldest keyframe holds the pose and the
-  // newest one's distance from it the scale.
+  // Keyframe 0 is the world's origin and never moves. With nothing else to hold it, the oldest keyframe holds the pose
+  // and the newest one's distance from it the scale.
   const bool hold_oldest = fixed.empty();
   for (const KeyframeId keyframe : ordered_free) {
     addCamera(keyframe, keyframe == 0 || (hold_oldest && keyframe == ordered_free.front()));
@@ -119,7 +124,8 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   if (!result.usable) return false;
 
   for (std::size_t k = 0; k < problem.cameras.size(); ++k) {
-    if (!problem.cameras[k].fixed) map.keyframes[static_cast<std::size_t>(keyframe_of[k])].world_T_camera = problem.cameras[k].world_T_camera;
+    if (!problem.cameras[k].fixed)
+      map.keyframes[static_cast<std::size_t>(keyframe_of[k])].world_T_camera = problem.cameras[k].world_T_camera;
   }
   for (std::size_t i = 0; i < used_points.size(); ++i) {
     MapPoint& point = map.points.at(used_points[i]);

@@ -1,5 +1,5 @@
-// P18, P19: bundle adjustment of the new keyframe, its covisible keyframes and all the points that they see; keyframes outside
-// that see these points are held fixed.
+// P18, P19: bundle adjustment of the new keyframe, its covisible keyframes and all the points that they see; keyframes
+// outside that see these points are held fixed.
 #pragma once
 
 #include "adjustment/bundle_adjustment.h"
@@ -9,17 +9,17 @@
 namespace edgeslam {
 
 struct LocalAdjustmentOptions {
-  int free_keyframes = 8;          // the new one and its best covisible ones
-  int fixed_keyframes = 20;        // most that only hold the gauge
-  int covisible_points = 100;      // common points that make two keyframes covisible ...
-  double covisible_share = 0.3;    // ... or this share of the new keyframe's, where the scene has less
-  double outlier = 3.0;            // whitened error over which an observation is taken out
+  int free_keyframes = 8;            // the new one and its best covisible ones
+  int fixed_keyframes = 20;          // most that only hold the gauge
+  int covisible_points = 100;        // common points that make two keyframes covisible ...
+  double covisible_share = 0.3;      // ... or this share of the new keyframe's, where the scene has less
+  double outlier = 3.0;              // whitened error over which an observation is taken out
   double largest_depth_sigma = 0.5;  // points whose depth is less certain than this share of it are taken out
   BundleOptions bundle{8, 2.0};
 };
 
-// Adjusts around the latest keyframe; takes out outliers and points that lost their depth. False where the solver failed (the
-// map is then as it was).
+// Adjusts around the latest keyframe; takes out outliers and points that lost their depth. False where the solver
+// failed (the map is then as it was).
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map);
 
 // The same over the given keyframes; `fixed` ones only hold the gauge.

@@ -15,7 +15,7 @@ struct MapperOptions {
   InitialisationOptions initialisation;
   NewPointOptions new_points;
   LocalAdjustmentOptions local_adjustment;
-  int view_keyframes = 10;   // points seen by so many of the latest keyframes are in the view
+  int view_keyframes = 10;  // points seen by so many of the latest keyframes are in the view
 };
 
 class Mapper {

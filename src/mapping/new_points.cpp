@@ -10,9 +10,10 @@ namespace {
 
 const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[static_cast<std::size_t>(id)]; }
 
-// P7, for points that are known in both directions; where a point may slide along its edge the epipolar lines of the outer
-// views need not cross at the same point of the edge, and the triangulation's own error is the check.
-bool passesThreeViews(const Camera& camera, const Map& map, PointId id, const std::vector<KeyframeId>& views, double limit) {
+// P7, for points that are known in both directions; where a point may slide along its edge the epipolar lines of the
+// outer views need not cross at the same point of the edge, and the triangulation's own error is the check.
+bool passesThreeViews(const Camera& camera, const Map& map, PointId id, const std::vector<KeyframeId>& views,
+                      double limit) {
   if (views.size() < 3) return true;
   const Keyframe& first = keyframeOf(map, views[views.size() - 3]);
   const Keyframe& middle = keyframeOf(map, views[views.size() - 2]);
@@ -48,7 +49,8 @@ int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map,
       candidate = candidates.erase(candidate);
       continue;
     }
-    if (static_cast<int>(views.size()) < options.fewest_views || !passesThreeViews(camera, map, id, views, options.three_view_error)) {
+    if (static_cast<int>(views.size()) < options.fewest_views ||
+        !passesThreeViews(camera, map, id, views, options.three_view_error)) {
       ++candidate;
       continue;
     }
@@ -60,9 +62,9 @@ int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map,
       others.push_back({view.world_T_camera.inverse() * host.world_T_camera, findObservation(view, id)->measurement});
     }
     const TriangulationResult depth = triangulate(camera, in_host.bearing, others);
-    const bool good = depth.converged && depth.inverse_depth > 0 &&
-                      depth.sigma < options.largest_depth_sigma * depth.inverse_depth &&
-                      depth.parallax * 180.0 / M_PI > options.least_parallax_deg && depth.largest_error < options.largest_error;
+    const bool good =
+        depth.converged && depth.inverse_depth > 0 && depth.sigma < options.largest_depth_sigma * depth.inverse_depth &&
+        depth.parallax * 180.0 / M_PI > options.least_parallax_deg && depth.largest_error < options.largest_error;
     if (!good) {
       ++candidate;
       continue;

@@ -14,11 +14,13 @@ bool hasDepth(const QualityPoint& p) { return p.inverse_depth > 0 && std::isfini
 bool agree(double a, double b, double ratio) { return std::abs(a - b) <= ratio * std::max(std::abs(a), std::abs(b)); }
 
 // Three successive points of a chain that lie on a straight line in the image.
-bool isStraightPiece(const QualityPoint& a, const QualityPoint& b, const QualityPoint& c, const QualityOptions& options) {
+bool isStraightPiece(const QualityPoint& a, const QualityPoint& b, const QualityPoint& c,
+                     const QualityOptions& options) {
   if (a.chain < 0 || a.chain != b.chain || b.chain != c.chain) return false;
   const Eigen::Vector2d chord = c.pixel - a.pixel;
   const double length = chord.norm();
-  if (length < 2 || (b.pixel - a.pixel).norm() > options.neighbour_px || (c.pixel - b.pixel).norm() > options.neighbour_px) {
+  if (length < 2 || (b.pixel - a.pixel).norm() > options.neighbour_px ||
+      (c.pixel - b.pixel).norm() > options.neighbour_px) {
     return false;
   }
   const double off = std::abs(chord.x() * (b.pixel - a.pixel).y() - chord.y() * (b.pixel - a.pixel).x()) / length;
@@ -45,8 +47,8 @@ QualityFactor qualityFactor(std::vector<QualityPoint> points, const QualityOptio
     ++quality.pieces;
     quality.kept += keepsOrder(points[i], points[i + 1], points[i + 2], options);
   }
-  // Straight lines reconstruct as straight lines from any two poses; only where edges of different directions meet do wrong
-  // poses tear the structure apart.
+  // Straight lines reconstruct as straight lines from any two poses; only where edges of different directions meet do
+  // wrong poses tear the structure apart.
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = i + 1; j < points.size(); ++j) {
       if ((points[i].pixel - points[j].pixel).squaredNorm() > options.neighbour_px * options.neighbour_px) continue;

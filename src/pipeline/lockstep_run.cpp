@@ -11,10 +11,14 @@ namespace {
 
 TrackingState stateOf(FrameState state) {
   switch (state) {
-    case FrameState::initialising: return TrackingState::initialising;
-    case FrameState::tracking: return TrackingState::tracking;
-    case FrameState::predicted: return TrackingState::predicted;
-    case FrameState::lost: return TrackingState::lost;
+    case FrameState::initialising:
+      return TrackingState::initialising;
+    case FrameState::tracking:
+      return TrackingState::tracking;
+    case FrameState::predicted:
+      return TrackingState::predicted;
+    case FrameState::lost:
+      return TrackingState::lost;
   }
   return TrackingState::lost;
 }

@@ -1,5 +1,5 @@
-// The lockstep schedule (design, section 4): tracking and mapping exchange values at fixed frames, so that a run is a pure
-// function of its input.
+// The lockstep schedule (design, section 4): tracking and mapping exchange values at fixed frames, so that a run is a
+// pure function of its input.
 #pragma once
 
 #include <deque>
@@ -42,7 +42,7 @@ class LockstepRun {
   std::deque<DueView> views_;
   std::int64_t processed_ = 0;
   std::int64_t drawing_interval_ = 100;
-  std::vector<KeyframeId> references_;   // by frame record: the keyframe that carries its pose, or -1
+  std::vector<KeyframeId> references_;  // by frame record: the keyframe that carries its pose, or -1
   std::vector<Pose> reference_T_camera_;
 };
 

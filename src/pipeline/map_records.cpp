@@ -33,7 +33,8 @@ std::vector<KeyframeRecord> keyframeRecords(const Map& map) {
     record.time_ns = keyframe.time_ns;
     record.world_T_camera = keyframe.world_T_camera;
     record.reason = keyframe.reason;
-    for (const PointObservation& observation : keyframe.observations) record.shared_points += map.points.count(observation.point) > 0;
+    for (const PointObservation& observation : keyframe.observations)
+      record.shared_points += map.points.count(observation.point) > 0;
     records.push_back(record);
   }
   return records;
@@ -45,7 +46,8 @@ std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera
   std::vector<MapPointRecord> records;
   int chain_number = 0;
   for (auto& [key, points] : chains) {
-    std::stable_sort(points.begin(), points.end(), [](const MapPoint* a, const MapPoint* b) { return a->order < b->order; });
+    std::stable_sort(points.begin(), points.end(),
+                     [](const MapPoint* a, const MapPoint* b) { return a->order < b->order; });
     for (const MapPoint* point : points) {
       MapPointRecord record;
       record.position = worldPosition(map, *point);
@@ -55,7 +57,8 @@ std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera
       const Keyframe& host = map.keyframes[static_cast<std::size_t>(point->host)];
       const Eigen::Vector2d pixel = project(camera, point->host_bearing);
       if (host.images && insideImage(camera, pixel, 1)) {
-        record.grey = host.images->pyramid.levels[0].at<unsigned char>(static_cast<int>(pixel.y() + 0.5), static_cast<int>(pixel.x() + 0.5));
+        record.grey = host.images->pyramid.levels[0].at<unsigned char>(static_cast<int>(pixel.y() + 0.5),
+                                                                       static_cast<int>(pixel.x() + 0.5));
       }
       records.push_back(record);
     }

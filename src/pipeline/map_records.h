@@ -1,4 +1,5 @@
-// The map as records for files and the report (P28): edge points with their direction in space, in the order of their edges.
+// The map as records for files and the report (P28): edge points with their direction in space, in the order of their
+// edges.
 #pragma once
 
 #include "map/map.h"

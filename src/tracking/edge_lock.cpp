@@ -4,8 +4,8 @@
 
 namespace edgeslam {
 
-void lockAlongEdges(const Camera& camera, const MapView& view, const Pose& world_T_camera, const EdgeLockOptions& options,
-                    std::vector<Track>& tracks) {
+void lockAlongEdges(const Camera& camera, const MapView& view, const Pose& world_T_camera,
+                    const EdgeLockOptions& options, std::vector<Track>& tracks) {
   if (!options.enabled) return;
   const Pose camera_T_world = world_T_camera.inverse();
   for (Track& track : tracks) {

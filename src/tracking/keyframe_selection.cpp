@@ -7,8 +7,10 @@ namespace edgeslam {
 KeyframeDecision selectKeyframe(const KeyframeEvidence& evidence, int image_width, const KeyframeOptions& options) {
   if (evidence.frames < options.least_frames_apart) return {};
   if (evidence.rotation_deg > options.rotation_deg) return {KeyframeChoice::previous_frame, "rotation"};
-  if (evidence.tracks < options.track_share * evidence.average_tracks) return {KeyframeChoice::previous_frame, "few tracks"};
-  const double fewest_mapped = std::min<double>(options.fewest_mapped, options.mapped_share * evidence.mapped_at_keyframe);
+  if (evidence.tracks < options.track_share * evidence.average_tracks)
+    return {KeyframeChoice::previous_frame, "few tracks"};
+  const double fewest_mapped =
+      std::min<double>(options.fewest_mapped, options.mapped_share * evidence.mapped_at_keyframe);
   if (evidence.mapped < fewest_mapped) return {KeyframeChoice::previous_frame, "few map points"};
   if (evidence.mean_displacement_px > options.displacement_share * image_width) {
     return {KeyframeChoice::current_frame, "displacement"};

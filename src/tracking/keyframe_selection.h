@@ -6,25 +6,25 @@
 namespace edgeslam {
 
 struct KeyframeOptions {
-  double rotation_deg = 15;            // P8: rotation to the last keyframe [deg]
-  double track_share = 0.3;            // P9: correspondences left, as a share of the running average
-  int fewest_mapped = 250;             // P10: 3D-2D correspondences ...
-  double mapped_share = 0.6;           // ... but at most this share of those at the last keyframe, so that bare scenes stay calm
-  double displacement_share = 0.2;     // P11: mean displacement, as a share of the image's width
-  double interval_s = 1.0;             // P12
-  int least_frames_apart = 3;          // no two keyframes nearer than this [frames]
+  double rotation_deg = 15;   // P8: rotation to the last keyframe [deg]
+  double track_share = 0.3;   // P9: correspondences left, as a share of the running average
+  int fewest_mapped = 250;    // P10: 3D-2D correspondences ...
+  double mapped_share = 0.6;  // ... but at most this share of those at the last keyframe, so that bare scenes stay calm
+  double displacement_share = 0.2;  // P11: mean displacement, as a share of the image's width
+  double interval_s = 1.0;          // P12
+  int least_frames_apart = 3;       // no two keyframes nearer than this [frames]
 };
 
 // What the criteria look at.
 struct KeyframeEvidence {
-  double rotation_deg = 0;             // since the last keyframe
+  double rotation_deg = 0;  // since the last keyframe
   double mean_displacement_px = 0;
-  int tracks = 0;                      // correspondences with the last keyframe
-  double average_tracks = 0;           // running average of these over the frames
-  int mapped = 0;                      // 3D-2D correspondences
-  int mapped_at_keyframe = 0;          // the most there were since the last keyframe
-  double seconds = 0;                  // since the last keyframe
-  int frames = 0;                      // likewise
+  int tracks = 0;              // correspondences with the last keyframe
+  double average_tracks = 0;   // running average of these over the frames
+  int mapped = 0;              // 3D-2D correspondences
+  int mapped_at_keyframe = 0;  // the most there were since the last keyframe
+  double seconds = 0;          // since the last keyframe
+  int frames = 0;              // likewise
 };
 
 enum class KeyframeChoice { none, previous_frame, current_frame };

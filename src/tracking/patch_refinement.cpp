@@ -31,7 +31,8 @@ Refinement refine(const Camera& camera, const MapView& view, const FrameImages& 
   alignment.damping = static_cast<float>(options.damping);
   const AlignmentResult aligned = alignPatch(patch, images.pyramid.levels[0], track.pixel, track.pixel, alignment);
   if (!aligned.inside || aligned.correlation < static_cast<float>(options.least_correlation)) return Refinement::lost;
-  if (std::abs(track.normal.dot(aligned.pixel - track.pixel)) > static_cast<float>(options.largest_move)) return Refinement::lost;
+  if (std::abs(track.normal.dot(aligned.pixel - track.pixel)) > static_cast<float>(options.largest_move))
+    return Refinement::lost;
   track.pixel = aligned.pixel;
   return Refinement::refined;
 }
@@ -46,8 +47,10 @@ Eigen::Matrix2f keyframeWarp(const Camera& camera, const Pose& camera_T_keyframe
     return project(camera, camera_T_keyframe * Eigen::Vector3d(bearing(camera, pixel) * depth));
   };
   Eigen::Matrix2d camera_by_keyframe;
-  camera_by_keyframe.col(0) = (transfer(centre + Eigen::Vector2d(step, 0)) - transfer(centre - Eigen::Vector2d(step, 0))) / (2 * step);
-  camera_by_keyframe.col(1) = (transfer(centre + Eigen::Vector2d(0, step)) - transfer(centre - Eigen::Vector2d(0, step))) / (2 * step);
+  camera_by_keyframe.col(0) =
+      (transfer(centre + Eigen::Vector2d(step, 0)) - transfer(centre - Eigen::Vector2d(step, 0))) / (2 * step);
+  camera_by_keyframe.col(1) =
+      (transfer(centre + Eigen::Vector2d(0, step)) - transfer(centre - Eigen::Vector2d(0, step))) / (2 * step);
   return camera_by_keyframe.inverse().cast<float>();
 }
 

@@ -1,5 +1,5 @@
-// The pixel of each track is refined against its patch in a keyframe, warped as the poses say, so that it does not drift from
-// frame to frame; what no longer looks like its keyframe's patch is dropped (design, section 5: flow).
+// The pixel of each track is refined against its patch in a keyframe, warped as the poses say, so that it does not
+// drift from frame to frame; what no longer looks like its keyframe's patch is dropped (design, section 5: flow).
 #pragma once
 
 #include <vector>
@@ -13,15 +13,15 @@ namespace edgeslam {
 
 struct RefinementOptions {
   bool enabled = true;
-  int window = 11;                 // side of the patch [px]
+  int window = 11;  // side of the patch [px]
   int iterations = 8;
   double damping = 3;              // Levenberg term towards the flow's result [grey^2/px^2]
   double least_correlation = 0.7;  // normalized cross-correlation below which the track is dropped
   double largest_move = 2.0;       // a refinement that moves the point farther across its edge is not believed [px]
 };
 
-// 2x2: takes offsets in the current image to offsets in the keyframe's, for a small patch that faces the keyframe at the
-// given distance from it.
+// 2x2: takes offsets in the current image to offsets in the keyframe's, for a small patch that faces the keyframe at
+// the given distance from it.
 Eigen::Matrix2f keyframeWarp(const Camera& camera, const Pose& camera_T_keyframe, const Eigen::Vector2f& keyframe_pixel,
                              double depth);
 

@@ -42,7 +42,8 @@ bool insideImage(const cv::Mat& image, const Eigen::Vector2f& pixel, float borde
 }  // namespace
 
 std::vector<Eigen::Vector2f> predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
-                                           const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth) {
+                                           const Pose& world_T_last, const Pose& world_T_predicted,
+                                           double scene_depth) {
   const Pose last_T_world = world_T_last.inverse(), predicted_T_world = world_T_predicted.inverse();
   std::vector<Eigen::Vector2f> predictions;
   predictions.reserve(tracks.size());
@@ -93,11 +94,11 @@ std::vector<Track> filterTracks(const FrameImages& from, const FrameImages& to, 
     const FlowMatch& match = matches[i];
     if (!match.found || !insideImage(image, match.pixel, border)) continue;
     // A corner-like point must come back in both directions, a point of an edge only across it.
-    const float error =
-        backwardError(from.pyramid, to.pyramid, track.pixel, match.pixel, track.normal, options);
+    const float error = backwardError(from.pyramid, to.pyramid, track.pixel, match.pixel, track.normal, options);
     if (error > static_cast<float>(options.forward_backward)) continue;
     const float least_dot = track.corner ? -1.0f : 0.7f;
-    if (nearestEdgePoint(edges, match.pixel, track.normal, static_cast<float>(options.edge_distance), least_dot) < 0) continue;
+    if (nearestEdgePoint(edges, match.pixel, track.normal, static_cast<float>(options.edge_distance), least_dot) < 0)
+      continue;
     if (!occupancy.take(match.pixel)) continue;
     kept.push_back(track);
     kept.back().pixel = match.pixel;

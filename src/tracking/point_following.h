@@ -1,5 +1,5 @@
-// P5, P6: the tracks of the last frame are found again in this one by bidirectional flow started from the predicted pose, and
-// what is redundant, inconsistent there and back, or off the edges is dropped.
+// P5, P6: the tracks of the last frame are found again in this one by bidirectional flow started from the predicted
+// pose, and what is redundant, inconsistent there and back, or off the edges is dropped.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace edgeslam {
 
-// Where each track should be seen after the camera moved: its last pixel plus the motion of its map point, or, where it has
-// none, of a point at the scene's usual depth.
+// Where each track should be seen after the camera moved: its last pixel plus the motion of its map point, or, where it
+// has none, of a point at the scene's usual depth.
 std::vector<Eigen::Vector2f> predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
                                            const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth);
 
@@ -23,8 +23,8 @@ double medianDepth(const std::vector<Track>& tracks, const MapView& view, const 
 std::vector<FlowMatch> followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,
                                     const std::vector<Eigen::Vector2f>& predictions, const FlowOptions& options);
 
-// P6: keeps the tracks that were found, agree there and back across their edge, lie on an edge of `edges`, and are not too
-// near to an older one. Writes their new pixels.
+// P6: keeps the tracks that were found, agree there and back across their edge, lie on an edge of `edges`, and are not
+// too near to an older one. Writes their new pixels.
 std::vector<Track> filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap& edges,
                                 const std::vector<Track>& tracks, const std::vector<FlowMatch>& matches,
                                 const FlowOptions& options);

@@ -12,7 +12,8 @@ PoseObservation observationOf(const Camera& camera, const MapView& view, const V
   observation.point = worldPosition(view, point);
   observation.measurement = measurementOf(track);
   const Pose camera_T_host = predicted_T_world * view.keyframe_poses[static_cast<std::size_t>(point.host)];
-  const Eigen::Vector3d scaled = camera_T_host.rotation * point.host_bearing + point.inverse_depth * camera_T_host.translation;
+  const Eigen::Vector3d scaled =
+      camera_T_host.rotation * point.host_bearing + point.inverse_depth * camera_T_host.translation;
   if (scaled.z() > 1e-3) {
     Eigen::Matrix<double, 2, 3> jacobian;
     project(camera, scaled, &jacobian);
@@ -41,7 +42,8 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
     }
   }
   pose.result = adjustPose(camera, world_T_predicted, observations, options);
-  const bool trustworthy = pose.result.converged && 2 * pose.result.inlier_count >= static_cast<int>(observations.size());
+  const bool trustworthy =
+      pose.result.converged && 2 * pose.result.inlier_count >= static_cast<int>(observations.size());
   if (trustworthy || !view.initialised) return pose;
 
   std::vector<Eigen::Vector3d> points, bearings;

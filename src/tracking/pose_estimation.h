@@ -1,4 +1,5 @@
-// The pose of a frame from its tracks' map points: robust Gauss-Newton from the prediction; EPnP in RANSAC (P16) where that fails.
+// The pose of a frame from its tracks' map points: robust Gauss-Newton from the prediction; EPnP in RANSAC (P16) where
+// that fails.
 #pragma once
 
 #include <vector>

@@ -10,7 +10,7 @@ namespace {
 
 struct Comparison {
   int count = 0;
-  double mean_square = 0;   // of the grey differences less their mean
+  double mean_square = 0;  // of the grey differences less their mean
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
 };
@@ -89,7 +89,8 @@ Eigen::Quaterniond alignRotation(const Camera& camera, const std::vector<Rotatio
     Comparison best = compare(camera, grid, from.levels[level], to.levels[level], to_R_from);
     for (int iteration = 0; iteration < 10; ++iteration) {
       if (2 * best.count < static_cast<int>(grid.samples.size())) break;
-      const Eigen::Vector3d step = (best.normal_matrix + 1e-3 * best.count * Eigen::Matrix3d::Identity()).ldlt().solve(best.right);
+      const Eigen::Vector3d step =
+          (best.normal_matrix + 1e-3 * best.count * Eigen::Matrix3d::Identity()).ldlt().solve(best.right);
       const Eigen::Quaterniond turned = (to_R_from * rotationExp(-step)).normalized();
       const Comparison next = compare(camera, grid, from.levels[level], to.levels[level], turned);
       if (2 * next.count < static_cast<int>(grid.samples.size()) || next.mean_square >= best.mean_square) break;

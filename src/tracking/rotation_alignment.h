@@ -1,6 +1,6 @@
-// Rotation between two frames from their small images alone, coarse to fine by inverse-compositional Gauss-Newton (Baker and
-// Matthews 2004; Klein and Murray 2008 use it to relocalise). It starts the flow where the camera turned in a way that constant
-// velocity does not foresee.
+// Rotation between two frames from their small images alone, coarse to fine by inverse-compositional Gauss-Newton
+// (Baker and Matthews 2004; Klein and Murray 2008 use it to relocalise). It starts the flow where the camera turned in
+// a way that constant velocity does not foresee.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,9 +14,9 @@ namespace edgeslam {
 // Samples of one pyramid level that every frame of a camera shares.
 struct RotationGrid {
   struct Sample {
-    int x = 0, y = 0;                              // in the level's pixels
-    Eigen::Vector3d bearing;                       // unit
-    Eigen::Matrix<double, 2, 3> pixel_by_rotation; // d level pixel / d rotation vector
+    int x = 0, y = 0;                               // in the level's pixels
+    Eigen::Vector3d bearing;                        // unit
+    Eigen::Matrix<double, 2, 3> pixel_by_rotation;  // d level pixel / d rotation vector
   };
   int level = 0;
   std::vector<Sample> samples;

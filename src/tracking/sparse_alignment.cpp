@@ -11,10 +11,11 @@ constexpr int side = 5;  // of a patch [px of the level]
 constexpr int area = side * side;
 
 struct Patch {
-  Eigen::Vector3d position;                    // in the first camera's frame
-  std::array<float, area> grey;                // less the patch's mean
+  Eigen::Vector3d position;                        // in the first camera's frame
+  std::array<float, area> grey;                    // less the patch's mean
   std::array<float, area> gradient_x, gradient_y;  // likewise
-  Eigen::Matrix<double, 2, 6> pixel_by_motion; // d level pixel / d [translation; rotation] of the point in the first frame
+  Eigen::Matrix<double, 2, 6>
+      pixel_by_motion;  // d level pixel / d [translation; rotation] of the point in the first frame
 };
 
 bool sample(const cv::Mat& image, double x, double y, int width, float* out) {
@@ -23,7 +24,8 @@ bool sample(const cv::Mat& image, double x, double y, int width, float* out) {
   const double left_floor = std::floor(left), top_floor = std::floor(top);
   const auto a = static_cast<float>(left - left_floor), b = static_cast<float>(top - top_floor);
   const auto step = static_cast<std::ptrdiff_t>(image.step[0]);
-  const unsigned char* row = image.data + static_cast<std::ptrdiff_t>(top_floor) * step + static_cast<std::ptrdiff_t>(left_floor);
+  const unsigned char* row =
+      image.data + static_cast<std::ptrdiff_t>(top_floor) * step + static_cast<std::ptrdiff_t>(left_floor);
   for (int v = 0; v < width; ++v, row += step) {
     for (int u = 0; u < width; ++u) {
       *out++ = (1 - b) * ((1 - a) * static_cast<float>(row[u]) + a * static_cast<float>(row[u + 1])) +
@@ -39,7 +41,8 @@ void removeMean(std::array<float, area>& values) {
   for (float& value : values) value -= sum / area;
 }
 
-std::vector<Patch> makePatches(const Camera& camera, const cv::Mat& image, int level, const std::vector<AlignmentPoint>& points) {
+std::vector<Patch> makePatches(const Camera& camera, const cv::Mat& image, int level,
+                               const std::vector<AlignmentPoint>& points) {
   const double scale = 1.0 / (1 << level);
   std::vector<Patch> patches;
   patches.reserve(points.size());
@@ -76,8 +79,8 @@ struct Comparison {
   Vector6d right = Vector6d::Zero();
 };
 
-Comparison compare(const Camera& camera, const std::vector<Patch>& patches, const cv::Mat& image, int level, const Pose& to_T_from,
-                   double huber) {
+Comparison compare(const Camera& camera, const std::vector<Patch>& patches, const cv::Mat& image, int level,
+                   const Pose& to_T_from, double huber) {
   const double scale = 1.0 / (1 << level);
   const Eigen::Matrix3d rotation = to_T_from.rotation.toRotationMatrix();
   Comparison sum;

@@ -1,5 +1,6 @@
 // Motion between two frames from small patches around all tracks at once, coarse to fine (Forster et al. 2014, sparse
-// model-based image alignment): a single edge can be taken for its neighbour, all of them together hardly. It starts the flow.
+// model-based image alignment): a single edge can be taken for its neighbour, all of them together hardly. It starts
+// the flow.
 #pragma once
 
 #include <vector>
@@ -11,15 +12,15 @@
 namespace edgeslam {
 
 struct AlignmentPoint {
-  Eigen::Vector2f pixel;       // in the first frame [px]
-  Eigen::Vector3d position;    // in the first camera's frame, map units
+  Eigen::Vector2f pixel;     // in the first frame [px]
+  Eigen::Vector3d position;  // in the first camera's frame, map units
 };
 
 struct SparseAlignmentOptions {
   int coarsest_level = 4;
   int finest_level = 1;
-  int iterations = 10;         // most steps a level
-  double huber = 12;           // of the grey difference, from where on it counts linearly [grey]
+  int iterations = 10;  // most steps a level
+  double huber = 12;    // of the grey difference, from where on it counts linearly [grey]
 };
 
 // to_T_from, from the better of the two starts. Returns `first_start` where too few patches can be compared.

@@ -9,18 +9,18 @@ namespace edgeslam {
 
 struct Track {
   PointId id = 0;
-  Eigen::Vector2f pixel;               // in the last frame in which it was found [px]
-  Eigen::Vector2f normal;              // unit, from dark to bright
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();    // in the last frame in which it was found [px]
+  Eigen::Vector2f normal = Eigen::Vector2f::UnitX();  // unit, from dark to bright
   bool corner = false;
-  float sigma_normal = 0.5f;           // [px]
-  float sigma_tangent = 1000;          // [px]
-  int chain = -1;                      // of the edge on which it was chosen
-  int order = 0;                       // place along that chain
-  KeyframeId keyframe = -1;            // the keyframe whose patch it is compared with
+  float sigma_normal = 0.5f;   // [px]
+  float sigma_tangent = 1000;  // [px]
+  int chain = -1;              // of the edge on which it was chosen
+  int order = 0;               // place along that chain
+  KeyframeId keyframe = -1;    // the keyframe whose patch it is compared with
   std::shared_ptr<const FrameImages> keyframe_images;
-  Eigen::Vector2f keyframe_pixel;      // its pixel there [px]
-  Eigen::Vector2f last_keyframe_pixel; // its pixel in the latest keyframe [px]
-  int outlier_frames = 0;              // frames in a row in which its map point did not fit the pose
+  Eigen::Vector2f keyframe_pixel = Eigen::Vector2f::Zero();       // its pixel there [px]
+  Eigen::Vector2f last_keyframe_pixel = Eigen::Vector2f::Zero();  // its pixel in the latest keyframe [px]
+  int outlier_frames = 0;  // frames in a row in which its map point did not fit the pose
 };
 
 inline Measurement measurementOf(const Track& track) {

@@ -113,7 +113,8 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
   FramePose estimate = estimatePose(camera_, view_, frame.tracks, predicted, options_.pose);
   if (!estimate.result.converged) return false;
   clock.finished("pose");
-  refineTracks(camera_, view_, *frame.images, estimate.result.world_T_camera, scene_depth, options_.refinement, frame.tracks);
+  refineTracks(camera_, view_, *frame.images, estimate.result.world_T_camera, scene_depth, options_.refinement,
+               frame.tracks);
   clock.finished("refinement");
   estimate = estimatePose(camera_, view_, frame.tracks, estimate.result.world_T_camera, options_.pose);
   const auto in_view = static_cast<double>(estimate.track_of_observation.size());
@@ -127,9 +128,10 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
     Track& track = frame.tracks[static_cast<std::size_t>(estimate.track_of_observation[i])];
     track.outlier_frames = estimate.result.inliers[i] ? 0 : track.outlier_frames + 1;
   }
-  frame.tracks.erase(std::remove_if(frame.tracks.begin(), frame.tracks.end(),
-                                    [&](const Track& t) { return view_.initialised && t.outlier_frames >= options_.outlier_frames; }),
-                     frame.tracks.end());
+  frame.tracks.erase(
+      std::remove_if(frame.tracks.begin(), frame.tracks.end(),
+                     [&](const Track& t) { return view_.initialised && t.outlier_frames >= options_.outlier_frames; }),
+      frame.tracks.end());
   lockAlongEdges(camera_, view_, frame.world_T_camera, options_.edge_lock, frame.tracks);
   const cv::Mat& grey = frame.images->pyramid.levels[0];
   for (Track& track : frame.tracks) updateAccuracy(grey, options_.points, track);
@@ -137,8 +139,10 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
   return true;
 }
 
-// The motion since the last frame from the images as a whole: first its rotation, then all of it by the tracks' patches.
-Pose Tracker::alignImages(const TrackedState& from, const TrackedState& to, const Pose& world_T_predicted, double scene_depth) const {
+// The motion since the last frame from the images as a whole: first its rotation, then all of it by the tracks'
+// patches.
+Pose Tracker::alignImages(const TrackedState& from, const TrackedState& to, const Pose& world_T_predicted,
+                          double scene_depth) const {
   const Pose by_velocity = world_T_predicted.inverse() * from.world_T_camera;
   const Eigen::Quaterniond turned =
       alignRotation(camera_, rotation_grids_, from.images->pyramid, to.images->pyramid, by_velocity.rotation);
@@ -151,8 +155,8 @@ Pose Tracker::alignImages(const TrackedState& from, const TrackedState& to, cons
     const double depth = point ? (from_T_world * worldPosition(view_, *point)).norm() : scene_depth;
     points.push_back({track.pixel, bearing(camera_, track.pixel.cast<double>()) * depth});
   }
-  const Pose to_T_from = alignSparsely(camera_, from.images->pyramid, to.images->pyramid, points, by_rotation, by_velocity,
-                                       options_.alignment);
+  const Pose to_T_from = alignSparsely(camera_, from.images->pyramid, to.images->pyramid, points, by_rotation,
+                                       by_velocity, options_.alignment);
   return from.world_T_camera * to_T_from.inverse();
 }
 
@@ -160,7 +164,8 @@ KeyframeDecision Tracker::judge(const TrackedState& frame) const {
   KeyframeEvidence evidence;
   evidence.rotation_deg =
       rotationAngle(view_.keyframe_poses.back().rotation, frame.world_T_camera.rotation) * 180.0 / M_PI;
-  for (const Track& track : frame.tracks) evidence.mean_displacement_px += (track.pixel - track.last_keyframe_pixel).norm();
+  for (const Track& track : frame.tracks)
+    evidence.mean_displacement_px += (track.pixel - track.last_keyframe_pixel).norm();
   evidence.mean_displacement_px /= std::max<double>(1, static_cast<double>(frame.tracks.size()));
   evidence.tracks = static_cast<int>(frame.tracks.size());
   evidence.average_tracks = average_tracks_;
@@ -273,9 +278,11 @@ void Tracker::adopt(const MapView& view) {
   const Pose reference = view_.keyframe_poses[std::min(view_.keyframe_poses.size(), view.keyframe_poses.size()) - 1];
   const KeyframeId reference_id =
       static_cast<KeyframeId>(std::min(view_.keyframe_poses.size(), view.keyframe_poses.size())) - 1;
-  const Pose moved = view.keyframe_poses[static_cast<std::size_t>(reference_id)] * reference.inverse() * last_.world_T_camera;
+  const Pose moved =
+      view.keyframe_poses[static_cast<std::size_t>(reference_id)] * reference.inverse() * last_.world_T_camera;
   view_ = view;
-  for (const Pose& pose : newer) view_.keyframe_poses.push_back(view.keyframe_poses[static_cast<std::size_t>(latest_known)] * pose);
+  for (const Pose& pose : newer)
+    view_.keyframe_poses.push_back(view.keyframe_poses[static_cast<std::size_t>(latest_known)] * pose);
   if (first) {
     next_keyframe_ = static_cast<KeyframeId>(view_.keyframe_poses.size());
     keyframe_time_ns_ = last_.images->time_ns;

@@ -1,5 +1,5 @@
-// Tracking: every frame its pose, its state, and whether it becomes a keyframe (sections 3.1, 3.2 and 3.4.1 of the paper).
-// Exchanges values with mapping: takes map views, gives tracked frames.
+// Tracking: every frame its pose, its state, and whether it becomes a keyframe (sections 3.1, 3.2 and 3.4.1 of the
+// paper). Exchanges values with mapping: takes map views, gives tracked frames.
 #pragma once
 
 #include <optional>
@@ -30,24 +30,24 @@ struct TrackerOptions {
   EdgeLockOptions edge_lock;
   SparseAlignmentOptions alignment;
   KeyframeOptions keyframes;
-  int fewest_tracks = 30;             // fewer are not enough to start a map with
-  double restart_share = 0.5;         // of the first frame's tracks: fewer left, and the initialisation starts anew
-  int outlier_frames = 4;             // a track whose map point misses the pose so often in a row is dropped
-  double least_inlier_share = 0.35;   // of the map points in view: fewer, and the pose is not believed
+  int fewest_tracks = 30;            // fewer are not enough to start a map with
+  double restart_share = 0.5;        // of the first frame's tracks: fewer left, and the initialisation starts anew
+  int outlier_frames = 4;            // a track whose map point misses the pose so often in a row is dropped
+  double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed
 };
 
 enum class FrameState { initialising, tracking, predicted, lost };
 
 struct TrackingOutcome {
   FrameState state = FrameState::initialising;
-  std::string reason;                        // why the state is not `tracking`
-  Pose world_T_camera;                       // measured when tracking, from motion alone when predicted
-  Matrix6d covariance = Matrix6d::Zero();    // of the right-hand update [translation; rotation]
-  KeyframeId reference = -1;                 // the keyframe that carries this frame's final pose, or -1
+  std::string reason;                      // why the state is not `tracking`
+  Pose world_T_camera;                     // measured when tracking, from motion alone when predicted
+  Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation]
+  KeyframeId reference = -1;               // the keyframe that carries this frame's final pose, or -1
   Pose reference_T_camera;
   int tracked_points = 0;
-  int mapped_points = 0;                     // map points that agree with the pose
-  std::vector<TrackedFrame> for_mapping;     // at most two: the previous frame may become a keyframe late
+  int mapped_points = 0;                  // map points that agree with the pose
+  std::vector<TrackedFrame> for_mapping;  // at most two: the previous frame may become a keyframe late
   StageTimes times;
 };
 
@@ -87,7 +87,8 @@ class Tracker {
   void choosePointsIn(TrackedState& frame, KeyframeId keyframe);
   TrackedFrame describe(const TrackedState& frame, KeyframeId keyframe, const char* reason) const;
   Pose predictPose(std::int64_t time_ns) const;
-  Pose alignImages(const TrackedState& from, const TrackedState& to, const Pose& world_T_predicted, double scene_depth) const;
+  Pose alignImages(const TrackedState& from, const TrackedState& to, const Pose& world_T_predicted,
+                   double scene_depth) const;
   void remember(TrackedState frame);
 
   Camera camera_;
@@ -95,9 +96,9 @@ class Tracker {
   std::vector<RotationGrid> rotation_grids_;
   MapView view_;
   BlurGate blur_gate_;
-  TrackedState last_;               // the last frame that was tracked
-  Pose last_T_next_;                // motion from the last tracked frame to the next, one frame interval ahead
-  std::int64_t interval_ns_ = 0;    // that the motion was measured over
+  TrackedState last_;             // the last frame that was tracked
+  Pose last_T_next_;              // motion from the last tracked frame to the next, one frame interval ahead
+  std::int64_t interval_ns_ = 0;  // that the motion was measured over
   PointId next_point_ = 0;
   KeyframeId next_keyframe_ = 0;
   std::size_t tracks_at_start_ = 0;
