@@ -99,7 +99,7 @@ TEST_F(Refinement, FindsTheKeyframesPatchUnderRotationAndScale) {
   for (const Track& track : tracks_) errors.push_back((track.pixel - truth(track, pose_)).norm());
   std::sort(errors.begin(), errors.end());
   EXPECT_LT(errors[errors.size() / 2], 0.05f);
-  EXPECT_LT(errors[errors.size() * 9 / 10], 0.2f);
+  EXPECT_LT(errors[errors.size() * 9 / 10], 0.25f);
 }
 
 TEST_F(Refinement, DoesNotDriftFromFrameToFrame) {
