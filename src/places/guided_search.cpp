@@ -69,7 +69,7 @@ Track accuracyAt(const cv::Mat& grey, const PointChoiceOptions& options, const F
 
 RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<PointId>& ids,
                        const FrameImages& current, const EdgeMap& edges, const Pose& start,
-                       const GuidedSearchOptions& options, const Round& round, int most_points) {
+                       const GuidedSearchOptions& options, const Round& round) {
   MapSearchOptions search = options.search;
   search.radius = round.radius;
   search.coarsest_level = round.coarsest_level;

@@ -18,7 +18,9 @@ struct RelocalisationOptions {
   KeyframeMatchingOptions matching;
   PointChoiceOptions points;       // of the frame, to be matched with the keyframes'
   int candidates = 5;              // keyframes tried in one frame
-  int matched_candidates = 3;      // of these, matched by descriptors too
+  int matched_candidates = 2;      // of these, matched by descriptors too
+  int refined_poses = 2;           // most poses of one kind that are followed up from a first look
+  double screened_share = 0.25;    // of the points in view that must agree roughly at the first look
   int compared_turned = 12;        // keyframes of which thumbnails are compared at turns too
   double least_correlation = 0.3;  // of the thumbnails, for a candidate
   int fewest_matches = 8;          // of descriptors, and of these in agreement, for a pose from them
