@@ -1,0 +1,134 @@
+#include "places/loop_closing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace edgeslam {
+namespace {
+
+const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[static_cast<std::size_t>(id)]; }
+
+// Length of the way from one keyframe to a later one.
+double wayBetween(const Map& map, KeyframeId from, KeyframeId to) {
+  double way = 0;
+  for (KeyframeId k = from; k < to; ++k) {
+    way += (keyframeOf(map, k + 1).world_T_camera.translation - keyframeOf(map, k).world_T_camera.translation).norm();
+  }
+  return way;
+}
+
+// Median distance of the points that a keyframe sees.
+double sceneDistance(const Map& map, KeyframeId keyframe) {
+  std::vector<double> distances;
+  for (const PointObservation& observation : keyframeOf(map, keyframe).observations) {
+    const auto point = map.points.find(observation.point);
+    if (point == map.points.end()) continue;
+    distances.push_back(
+        (worldPosition(map, point->second) - keyframeOf(map, keyframe).world_T_camera.translation).norm());
+  }
+  if (distances.empty()) return 0;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+}  // namespace
+
+LoopOutcome LoopClosing::addKeyframe(const Map& map) {
+  LoopOutcome outcome;
+  if (!options_.enabled || map.keyframes.empty()) return outcome;
+  describeNew(map);
+  outcome.current = map.keyframes.back().id;
+  const auto& current = known_.back().signature;
+  if (!current) return outcome;
+  if (last_loop_ >= 0 && outcome.current - last_loop_ <= options_.pause_keyframes) return outcome;
+
+  std::vector<double> scores;
+  for (std::size_t k = 0; k + 1 < known_.size(); ++k) {
+    scores.push_back(known_[k].signature ? score(*known_[k].signature, *current) : kNoScore);
+  }
+  const LoopDetection detection = detectLoops(map, outcome.current, scores, options_.detection);
+  outcome.bar = detection.bar;
+  for (const LoopCandidate& candidate : detection.candidates) {
+    JudgedLoop judged = judge(map, outcome.current, candidate);
+    if (judged.accepted) {
+      LoopCorrection correction;
+      if (computeCorrection(camera_, map, outcome.current, candidate.keyframe, judged.verification,
+                            options_.verification, options_.correction, correction)) {
+        outcome.correction = std::move(correction);
+        last_loop_ = outcome.current;
+      } else {
+        judged.accepted = false;
+        judged.reason = "the pose graph has no solution";
+      }
+    }
+    outcome.considered.push_back(std::move(judged));
+    if (outcome.correction) break;
+  }
+  return outcome;
+}
+
+void LoopClosing::describeNew(const Map& map) {
+  // A map begun anew, or with keyframes taken out: what no longer fits is described again.
+  std::size_t fitting = 0;
+  while (fitting < known_.size() && fitting < map.keyframes.size() &&
+         known_[fitting].frame_index == map.keyframes[fitting].frame_index) {
+    ++fitting;
+  }
+  if (fitting < known_.size()) {
+    known_.resize(fitting);
+    last_loop_ = std::min(last_loop_, static_cast<KeyframeId>(fitting) - 1);
+  }
+  for (std::size_t k = fitting; k < map.keyframes.size(); ++k) {
+    const Keyframe& keyframe = map.keyframes[k];
+    Known known;
+    known.frame_index = keyframe.frame_index;
+    if (keyframe.images) {
+      const cv::Mat& grey = keyframe.images->pyramid.levels[0];
+      known.signature = edgeSignature(grey, detectEdges(grey, options_.edges));
+    }
+    known_.push_back(std::move(known));
+  }
+}
+
+double LoopClosing::score(const EdgeSignature& a, const EdgeSignature& b) const {
+  const double paper = signatureScore(a, b, options_.signature);
+  if (options_.thumbnail_weight <= 0) return paper;
+  const double thumbnail = std::max(0.0, thumbnailScore(a, b, options_.thumbnail_shift));
+  return (1 - options_.thumbnail_weight) * paper + options_.thumbnail_weight * thumbnail;
+}
+
+JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCandidate& candidate) const {
+  JudgedLoop judged;
+  judged.keyframe = candidate.keyframe;
+  judged.score = candidate.score;
+  const std::uint64_t seed =
+      options_.seed + static_cast<std::uint64_t>(current) * 1000003u + static_cast<std::uint64_t>(candidate.keyframe);
+  judged.verification = verifyLoop(camera_, map, current, candidate.keyframe, options_.verification, seed);
+  judged.reason = judged.verification.reason;
+  if (!judged.verification.accepted) return judged;
+
+  // Drift grows with the way: what would move the keyframe farther than drift can is another place that looks the same.
+  const Pose& world_T_candidate = keyframeOf(map, candidate.keyframe).world_T_camera;
+  const Pose& world_T_current = keyframeOf(map, current).world_T_camera;
+  const Similarity candidate_S_current = judged.verification.current_S_candidate.inverse();
+  const double turn =
+      rotationAngle(world_T_candidate.rotation * candidate_S_current.rotation, world_T_current.rotation);
+  const double move = (world_T_candidate * candidate_S_current.translation - world_T_current.translation).norm();
+  const double allowed =
+      options_.largest_drift * (wayBetween(map, candidate.keyframe, current) + sceneDistance(map, candidate.keyframe));
+  char text[160];
+  if (turn * 180.0 / M_PI > options_.largest_turn_deg) {
+    std::snprintf(text, sizeof(text), "would turn the keyframe by %.0f deg", turn * 180.0 / M_PI);
+    judged.reason = text;
+  } else if (move > allowed) {
+    std::snprintf(text, sizeof(text), "would move the keyframe by %.2f, over %.2f that drift can", move, allowed);
+    judged.reason = text;
+  } else {
+    judged.accepted = true;
+  }
+  return judged;
+}
+
+}  // namespace edgeslam

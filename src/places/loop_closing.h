@@ -1,0 +1,72 @@
+// Loop closing, section 3.5 of the paper, P23 to P27: is the new keyframe at a place seen before, and what follows.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edges/edge_detection.h"
+#include "places/edge_signature.h"
+#include "places/loop_correction.h"
+#include "places/loop_detection.h"
+#include "places/loop_verification.h"
+
+namespace edgeslam {
+
+struct LoopClosingOptions {
+  bool enabled = true;
+  EdgeOptions edges;
+  SignatureOptions signature;
+  double thumbnail_weight =
+      0.5;  // of the thumbnails' correlation in the score, the rest is the paper's; 0: the paper's alone
+  int thumbnail_shift = 4;  // of thumbnails against each other [thumbnail px]
+  LoopDetectionOptions detection;
+  LoopVerificationOptions verification;
+  LoopCorrectionOptions correction;
+  double largest_turn_deg = 45;  // a loop that would turn the keyframe by more is no drift [deg]
+  double largest_drift = 0.3;    // nor one that would move it by over this share of the way since ...
+  int pause_keyframes = 5;       // after a loop no other one is looked for, for so many keyframes
+  std::uint64_t seed = 1;
+};
+
+struct JudgedLoop {
+  KeyframeId keyframe = -1;  // the candidate
+  double score = 0;
+  bool accepted = false;
+  std::string reason;
+  LoopVerification verification;
+};
+
+struct LoopOutcome {
+  KeyframeId current = -1;
+  double bar = 0;                            // P24
+  std::vector<JudgedLoop> considered;        // best score first, up to the accepted one
+  std::optional<LoopCorrection> correction;  // where one was accepted: for mapping to apply
+};
+
+class LoopClosing {
+ public:
+  LoopClosing(const Camera& camera, const LoopClosingOptions& options) : camera_(camera), options_(options) {}
+
+  // The map's latest keyframe, once for each, after the local adjustment. A map that was begun anew is told by fewer
+  // keyframes or other images. Verifies at most options.detection.most_candidates.
+  LoopOutcome addKeyframe(const Map& map);
+
+ private:
+  struct Known {
+    std::int64_t frame_index = -1;
+    std::optional<EdgeSignature> signature;  // none without images
+  };
+
+  void describeNew(const Map& map);
+  double score(const EdgeSignature& a, const EdgeSignature& b) const;
+  JudgedLoop judge(const Map& map, KeyframeId current, const LoopCandidate& candidate) const;
+
+  Camera camera_;
+  LoopClosingOptions options_;
+  std::vector<Known> known_;   // by keyframe
+  KeyframeId last_loop_ = -1;  // keyframe at which the last loop was accepted
+};
+
+}  // namespace edgeslam
