@@ -67,7 +67,14 @@ TEST(Map, APointLiesAlongItsHostsBearing) {
 TEST(MapView, FindsPointsAndPlacesThemAsTheMapDoes) {
   MapView view;
   view.keyframe_poses = {Pose(), {rotationExp({0, M_PI / 2, 0}), {1, 2, 3}}};
-  for (const PointId id : {3, 8, 20}) view.points.push_back({id, 1, Eigen::Vector3d(0.6, 0, 0.8), 0.25, 0.01});
+  for (const PointId id : {3, 8, 20}) {
+    ViewPoint point;
+    point.id = id;
+    point.host = 1;
+    point.host_bearing = Eigen::Vector3d(0.6, 0, 0.8);
+    point.inverse_depth = 0.25;
+    view.points.push_back(point);
+  }
   ASSERT_NE(findPoint(view, 8), nullptr);
   EXPECT_EQ(findPoint(view, 8)->id, 8);
   for (const PointId id : {0, 4, 21}) EXPECT_EQ(findPoint(view, id), nullptr) << id;
@@ -85,6 +92,7 @@ TEST(MapView, AFlatViewPutsEveryPointOfTheFirstFrameAtDistanceOne) {
   }
   const MapView view = flatView(first);
   EXPECT_FALSE(view.initialised);
+  EXPECT_NE(view.waiting_for, "");
   EXPECT_EQ(view.origin_frame, 17);
   ASSERT_EQ(view.points.size(), 3U);
   for (const PointObservation& observation : first.observations) {

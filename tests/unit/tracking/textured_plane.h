@@ -51,7 +51,13 @@ inline Track trackAt(PointId id, const Eigen::Vector2f& pixel, const Eigen::Vect
 // A map point of `view`, hosted in its keyframe `host`, at a place in the world.
 inline ViewPoint viewPoint(const MapView& view, PointId id, KeyframeId host, const Eigen::Vector3d& position) {
   const Eigen::Vector3d in_host = view.keyframe_poses[static_cast<std::size_t>(host)].inverse() * position;
-  return {id, host, in_host.normalized(), 1 / in_host.norm(), 0.01 / in_host.norm()};
+  ViewPoint point;
+  point.id = id;
+  point.host = host;
+  point.host_bearing = in_host.normalized();
+  point.inverse_depth = 1 / in_host.norm();
+  point.inverse_depth_sigma = 0.01 * point.inverse_depth;
+  return point;
 }
 
 }  // namespace edgeslam
