@@ -20,6 +20,8 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
   FlowOptions& flow = settings.tracking.flow;
   RefinementOptions& refinement = settings.tracking.refinement;
   EdgeLockOptions& edge_lock = settings.tracking.edge_lock;
+  MapReuseOptions& reuse = settings.tracking.map_reuse;
+  ViewOptions& view = settings.mapping.view;
   KeyframeOptions& keyframes = settings.tracking.keyframes;
   TrackerOptions& tracking = settings.tracking;
   InitialisationOptions& initialisation = settings.mapping.initialisation;
@@ -92,6 +94,19 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"edge_lock.straightness", &edge_lock.straightness, "", 0, 1,
        "held where the standard deviation across is below this share of that along"},
       {"edge_lock.longest_move", &edge_lock.longest_move, "px", 0, 100, "a longer way is not taken"},
+
+      heading("map_reuse", "Map points that come into view again are found and followed on"),
+      {"map_reuse.enabled", &reuse.enabled, "", 0, 0, "off only to measure what it gains"},
+      {"map_reuse.interval", &reuse.interval, "frames", 1, 1000,
+       "from one search to the next; keyframes search besides"},
+      {"map_reuse.radius", &reuse.search.radius, "px", 0.5, 50, "searched around the projection"},
+      {"map_reuse.least_correlation", &reuse.search.least_correlation, "", -1, 1, "with the keyframe's patch"},
+      {"map_reuse.outlier", &reuse.outlier, "sigma", 0.1, 100, "farther from its projection a point is not believed"},
+      {"map_reuse.latest_keyframes", &view.latest_keyframes, "keyframes", 1, 1000, "whose points are looked for"},
+      {"map_reuse.near_keyframes", &view.near_keyframes, "keyframes", 0, 1000,
+       "older ones at the same place, likewise"},
+      {"map_reuse.largest_turn_deg", &view.largest_turn_deg, "deg", 0, 180, "between these and the latest keyframe"},
+      {"map_reuse.largest_distance", &view.largest_distance, "", 0, 100, "to these, as a share of the scene's depth"},
 
       heading("tracking", "State of tracking"),
       {"tracking.fewest_tracks", &tracking.fewest_tracks, "points", 8, 1000, "fewer do not start a map"},

@@ -20,7 +20,7 @@ struct PointChoiceOptions {
   double corner_ratio = 0.15;  // corner-like: l2 > corner_ratio * l1 ...
   double corner_strength = 6;  // ... and l2 > corner_strength [grey^2/px^2]
   double noise = 4;            // of the structure tensor [grey^2/px^2]
-  double sigma_edge = 0.5;     // across an edge [px]
+  double sigma_edge = 0.3;     // across an edge [px]
   double sigma_corner = 0.17;  // of a corner-like point, across its stronger direction [px]
   double border = 12;          // points keep this distance from the image's border [px]
 };

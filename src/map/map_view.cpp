@@ -8,7 +8,12 @@ MapView flatView(const TrackedFrame& first) {
   view.waiting_for = "motion of the camera";
   view.keyframe_poses.emplace_back();
   for (const PointObservation& observation : first.observations) {
-    view.points.push_back({observation.point, 0, observation.bearing, 1.0, flat_start_sigma});
+    ViewPoint point;
+    point.id = observation.point;
+    point.host_bearing = observation.bearing;
+    point.inverse_depth = 1.0;
+    point.inverse_depth_sigma = flat_start_sigma;
+    view.points.push_back(point);
   }
   return view;
 }

@@ -16,6 +16,10 @@ struct ViewPoint {
   Eigen::Vector3d host_bearing;
   double inverse_depth = 0;
   double inverse_depth_sigma = 0;
+  // How the latest keyframe with images saw it: what it is found again by. -1: no such keyframe.
+  KeyframeId source = -1;
+  Measurement source_measurement;
+  bool corner = false;
 };
 
 struct MapView {
@@ -23,8 +27,9 @@ struct MapView {
   std::int64_t origin_frame = -1;  // frame of keyframe 0: a view of an attempt that was given up is told by it
   bool initialised = false;        // false: a provisional, flat-depth map from the first frame; poses are not given out
   std::string waiting_for;         // why not, in words that a user understands
-  std::vector<Pose> keyframe_poses;  // world_T_camera, index is the keyframe
-  std::vector<ViewPoint> points;     // sorted by id
+  std::vector<Pose> keyframe_poses;                                 // world_T_camera, index is the keyframe
+  std::vector<std::shared_ptr<const FrameImages>> keyframe_images;  // likewise; null where no point needs it
+  std::vector<ViewPoint> points;                                    // sorted by id
 };
 
 inline const ViewPoint* findPoint(const MapView& view, PointId id) {

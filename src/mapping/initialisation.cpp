@@ -333,13 +333,10 @@ double Initialisation::displacementLessRotation() const {
 }
 
 void Initialisation::writeProvisional(MapView& view) const {
-  view.origin_frame = first_.frame_index;
-  view.keyframe_poses.assign(1, Pose());
-  view.points.clear();
-  for (std::size_t i = 0; i < first_.observations.size(); ++i) {
-    if (inverse_depths_[i] <= 0) continue;
-    view.points.push_back(
-        {first_.observations[i].point, 0, first_.observations[i].bearing, inverse_depths_[i], depth_sigmas_[i]});
+  view = flatView(first_);
+  for (std::size_t i = 0; i < view.points.size(); ++i) {
+    view.points[i].inverse_depth = inverse_depths_[i];
+    view.points[i].inverse_depth_sigma = depth_sigmas_[i];
   }
 }
 

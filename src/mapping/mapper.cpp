@@ -48,21 +48,15 @@ void Mapper::addKeyframe(const TrackedFrame& frame) {
 
 MapView Mapper::view() const {
   MapView view;
+  if (initialised_) {
+    view = viewOfMap(map_, options_.view);
+  } else {
+    initialisation_.writeProvisional(view);
+    view.waiting_for = initialisation_.waitingFor();
+  }
+  view.initialised = initialised_;
   view.version = version_;
   view.origin_frame = origin_frame_;
-  view.initialised = initialised_;
-  if (!initialised_) {
-    view.waiting_for = initialisation_.waitingFor();
-    initialisation_.writeProvisional(view);
-    return view;
-  }
-  for (const Keyframe& keyframe : map_.keyframes) view.keyframe_poses.push_back(keyframe.world_T_camera);
-  const KeyframeId oldest = static_cast<KeyframeId>(map_.keyframes.size()) - options_.view_keyframes;
-  for (const auto& [id, point] : map_.points) {
-    const KeyframeId last_seen = point.seen_in.empty() ? point.host : std::max(point.host, point.seen_in.back());
-    if (last_seen < oldest) continue;
-    view.points.push_back({id, point.host, point.host_bearing, point.inverse_depth, point.inverse_depth_sigma});
-  }
   return view;
 }
 

@@ -8,6 +8,7 @@
 #include "mapping/initialisation.h"
 #include "mapping/local_adjustment.h"
 #include "mapping/new_points.h"
+#include "mapping/view_of_map.h"
 
 namespace edgeslam {
 
@@ -15,7 +16,7 @@ struct MapperOptions {
   InitialisationOptions initialisation;
   NewPointOptions new_points;
   LocalAdjustmentOptions local_adjustment;
-  int view_keyframes = 10;  // points seen by so many of the latest keyframes are in the view
+  ViewOptions view;
 };
 
 class Mapper {

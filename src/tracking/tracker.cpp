@@ -42,6 +42,12 @@ TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, c
       clock.finished("choice of points");
     }
   }
+  if (located && view_.initialised &&
+      frames_since_keyframe_ % options_.map_reuse.interval == options_.map_reuse.interval - 1) {
+    reuseMapPoints(camera_, view_, frame.images, frame.edges, frame.world_T_camera,
+                   static_cast<std::size_t>(options_.points.count), options_.map_reuse, frame.tracks);
+    clock.finished("map reuse");
+  }
   if (!located) {
     const StageTimes times = outcome.times;
     std::vector<TrackedFrame> for_mapping = std::move(outcome.for_mapping);
@@ -177,6 +183,8 @@ KeyframeDecision Tracker::judge(const TrackedState& frame) const {
 }
 
 void Tracker::becomeKeyframe(TrackedState& frame, const char* reason, TrackingOutcome& outcome) {
+  reuseMapPoints(camera_, view_, frame.images, frame.edges, frame.world_T_camera,
+                 static_cast<std::size_t>(options_.points.count), options_.map_reuse, frame.tracks);
   for (Track& track : frame.tracks) {
     track.keyframe = next_keyframe_;
     track.keyframe_images = frame.images;

@@ -12,6 +12,7 @@
 #include "map/map_view.h"
 #include "tracking/edge_lock.h"
 #include "tracking/keyframe_selection.h"
+#include "tracking/map_reuse.h"
 #include "tracking/patch_refinement.h"
 #include "tracking/pose_estimation.h"
 #include "tracking/rotation_alignment.h"
@@ -29,6 +30,7 @@ struct TrackerOptions {
   RefinementOptions refinement;
   EdgeLockOptions edge_lock;
   SparseAlignmentOptions alignment;
+  MapReuseOptions map_reuse;
   KeyframeOptions keyframes;
   int fewest_tracks = 30;            // fewer are not enough to start a map with
   double restart_share = 0.5;        // of the first frame's tracks: fewer left, and the initialisation starts anew

@@ -1,0 +1,88 @@
+#include "mapping/view_of_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace edgeslam {
+namespace {
+
+double medianDepth(const Map& map, const Keyframe& keyframe) {
+  std::vector<double> depths;
+  for (const PointObservation& observation : keyframe.observations) {
+    const auto point = map.points.find(observation.point);
+    if (point == map.points.end()) continue;
+    depths.push_back((worldPosition(map, point->second) - keyframe.world_T_camera.translation).norm());
+  }
+  if (depths.empty()) return 0;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
+
+// By keyframe: whether its points are in the view.
+std::vector<char> keyframesInView(const Map& map, const ViewOptions& options) {
+  const Keyframe& latest = map.keyframes.back();
+  const double reach = options.largest_distance * medianDepth(map, latest);
+  std::vector<char> in_view(map.keyframes.size(), 0);
+  std::vector<std::pair<double, KeyframeId>> near;
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id + options.latest_keyframes > latest.id) {
+      in_view[static_cast<std::size_t>(keyframe.id)] = 1;
+      continue;
+    }
+    const double distance = (keyframe.world_T_camera.translation - latest.world_T_camera.translation).norm();
+    const double turn = rotationAngle(keyframe.world_T_camera.rotation, latest.world_T_camera.rotation) * 180.0 / M_PI;
+    if (distance < reach && turn < options.largest_turn_deg) {
+      near.emplace_back(distance / reach + turn / options.largest_turn_deg, keyframe.id);
+    }
+  }
+  std::sort(near.begin(), near.end());
+  for (std::size_t i = 0; i < near.size() && i < static_cast<std::size_t>(options.near_keyframes); ++i) {
+    in_view[static_cast<std::size_t>(near[i].second)] = 1;
+  }
+  return in_view;
+}
+
+void writeSource(const Map& map, const MapPoint& point, ViewPoint& view_point) {
+  const auto take = [&](KeyframeId id) {
+    const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
+    if (!keyframe.images) return false;
+    const PointObservation* observation = findObservation(keyframe, point.id);
+    view_point.source = id;
+    view_point.source_measurement = observation->measurement;
+    view_point.corner = observation->corner;
+    return true;
+  };
+  for (auto id = point.seen_in.rbegin(); id != point.seen_in.rend(); ++id) {
+    if (take(*id)) return;
+  }
+  take(point.host);
+}
+
+}  // namespace
+
+MapView viewOfMap(const Map& map, const ViewOptions& options) {
+  MapView view;
+  for (const Keyframe& keyframe : map.keyframes) view.keyframe_poses.push_back(keyframe.world_T_camera);
+  view.keyframe_images.resize(map.keyframes.size());
+  const std::vector<char> in_view = keyframesInView(map, options);
+  for (const auto& [id, point] : map.points) {
+    const auto seen = [&](KeyframeId keyframe) { return in_view[static_cast<std::size_t>(keyframe)] != 0; };
+    if (!seen(point.host) && std::none_of(point.seen_in.begin(), point.seen_in.end(), seen)) continue;
+    ViewPoint view_point;
+    view_point.id = id;
+    view_point.host = point.host;
+    view_point.host_bearing = point.host_bearing;
+    view_point.inverse_depth = point.inverse_depth;
+    view_point.inverse_depth_sigma = point.inverse_depth_sigma;
+    writeSource(map, point, view_point);
+    if (view_point.source >= 0) {
+      const auto source = static_cast<std::size_t>(view_point.source);
+      view.keyframe_images[source] = map.keyframes[source].images;
+    }
+    view.points.push_back(view_point);
+  }
+  return view;
+}
+
+}  // namespace edgeslam

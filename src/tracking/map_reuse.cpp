@@ -1,0 +1,65 @@
+#include "tracking/map_reuse.h"
+
+#include <algorithm>
+
+namespace edgeslam {
+namespace {
+
+SearchPoint searchPointOf(const MapView& view, const ViewPoint& point) {
+  const auto source = static_cast<std::size_t>(point.source);
+  SearchPoint search;
+  search.id = point.id;
+  search.position = worldPosition(view, point);
+  search.source_images = view.keyframe_images[source];
+  search.world_T_source = view.keyframe_poses[source];
+  search.source_pixel = point.source_measurement.pixel.cast<float>();
+  search.source_normal = point.source_measurement.normal.cast<float>();
+  search.corner = point.corner;
+  search.sigma_normal = static_cast<float>(point.source_measurement.sigma_normal);
+  search.sigma_tangent = static_cast<float>(point.source_measurement.sigma_tangent);
+  return search;
+}
+
+bool nearTrack(const std::vector<Track>& tracks, const Eigen::Vector2f& pixel, float distance) {
+  return std::any_of(tracks.begin(), tracks.end(),
+                     [&](const Track& track) { return (track.pixel - pixel).squaredNorm() < distance * distance; });
+}
+
+}  // namespace
+
+void reuseMapPoints(const Camera& camera, const MapView& view, const std::shared_ptr<const FrameImages>& images,
+                    const EdgeMap& edges, const Pose& world_T_camera, std::size_t most, const MapReuseOptions& options,
+                    std::vector<Track>& tracks) {
+  if (!options.enabled) return;
+  std::vector<SearchPoint> points;
+  std::size_t t = 0;
+  for (const ViewPoint& point : view.points) {
+    while (t < tracks.size() && tracks[t].id < point.id) ++t;
+    const bool followed = t < tracks.size() && tracks[t].id == point.id;
+    if (!followed && point.source >= 0) points.push_back(searchPointOf(view, point));
+  }
+  const Pose camera_T_world = world_T_camera.inverse();
+  const auto by_id = [](const Track& a, const Track& b) { return a.id < b.id; };
+  for (const FoundPoint& found : searchMapPoints(camera, points, *images, edges, world_T_camera, options.search)) {
+    if (tracks.size() >= most) break;
+    const SearchPoint& point = points[found.index];
+    const Measurement measurement = measurementOf(point, found);
+    const Eigen::Vector2d error = project(camera, camera_T_world * point.position) - measurement.pixel;
+    if ((whitening(measurement) * error).norm() > options.outlier) continue;
+    if (nearTrack(tracks, found.pixel, static_cast<float>(options.spacing))) continue;
+    const ViewPoint& view_point = *findPoint(view, point.id);
+    Track track;
+    track.id = point.id;
+    track.pixel = track.last_keyframe_pixel = found.pixel;
+    track.normal = found.normal;
+    track.corner = point.corner;
+    track.sigma_normal = static_cast<float>(measurement.sigma_normal);
+    track.sigma_tangent = static_cast<float>(measurement.sigma_tangent);
+    track.keyframe = view_point.source;
+    track.keyframe_images = point.source_images;
+    track.keyframe_pixel = point.source_pixel;
+    tracks.insert(std::upper_bound(tracks.begin(), tracks.end(), track, by_id), track);
+  }
+}
+
+}  // namespace edgeslam

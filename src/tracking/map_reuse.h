@@ -1,0 +1,26 @@
+// Map reuse (design, section 5): map points that came into view again are found across their edge and followed on, so
+// that what was mapped once is not mapped twice.
+#pragma once
+
+#include <vector>
+
+#include "map/map_view.h"
+#include "tracking/map_search.h"
+#include "tracking/track.h"
+
+namespace edgeslam {
+
+struct MapReuseOptions {
+  bool enabled = true;
+  int interval = 5;      // frames from one search to the next; every keyframe searches besides
+  double outlier = 3.0;  // whitened distance from its projection over which a found point is not believed
+  double spacing = 3;    // least distance from the tracks there are [px]
+  MapSearchOptions search;
+};
+
+// Appends the points found to the tracks, which stay sorted by id; at most until there are `most` tracks.
+void reuseMapPoints(const Camera& camera, const MapView& view, const std::shared_ptr<const FrameImages>& images,
+                    const EdgeMap& edges, const Pose& world_T_camera, std::size_t most, const MapReuseOptions& options,
+                    std::vector<Track>& tracks);
+
+}  // namespace edgeslam
