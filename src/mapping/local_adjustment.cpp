@@ -56,6 +56,19 @@ void removeOutliers(const std::vector<std::pair<PointId, KeyframeId>>& outliers,
   }
 }
 
+// The newest of those farthest; after a loop the newest camera of all may be where the first is.
+int farthestFromFirst(const std::vector<BundleCamera>& cameras) {
+  int farthest = static_cast<int>(cameras.size()) - 1;
+  double largest = 0;
+  for (std::size_t i = cameras.size(); i-- > 1;) {
+    const double distance = (cameras[i].world_T_camera.translation - cameras.front().world_T_camera.translation).norm();
+    if (distance <= largest) continue;
+    largest = distance;
+    farthest = static_cast<int>(i);
+  }
+  return farthest;
+}
+
 }  // namespace
 
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map) {
@@ -92,14 +105,14 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   std::vector<KeyframeId> ordered_free = free;
   std::sort(ordered_free.begin(), ordered_free.end());
   // Keyframe 0 is the world's origin and never moves. With nothing else to hold it, the oldest keyframe holds the pose
-  // and the newest one's distance from it the scale.
+  // and the distance of the one farthest from it the scale.
   const bool hold_oldest = fixed.empty();
   for (const KeyframeId keyframe : ordered_free) {
     addCamera(keyframe, keyframe == 0 || (hold_oldest && keyframe == ordered_free.front()));
   }
   const std::vector<PointId> points = pointsSeenBy(map, camera_of);
   for (const KeyframeId keyframe : fixed) addCamera(keyframe, true);
-  if (hold_oldest) problem.scale_camera = static_cast<int>(ordered_free.size()) - 1;
+  if (hold_oldest) problem.scale_camera = farthestFromFirst(problem.cameras);
 
   std::vector<PointId> used_points;
   std::vector<std::pair<PointId, KeyframeId>> observed;
