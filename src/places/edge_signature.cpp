@@ -9,6 +9,7 @@ namespace edgeslam {
 namespace {
 
 constexpr int kPartsAcross = 4;
+constexpr double kPlain = 0.01;  // mean square of a thumbnail that shows nothing [grey^2]
 
 // Sums over the edge points: what cv::HuMoments takes, of points instead of pixels, so that sub-pixel places count.
 cv::Moments edgeMoments(const EdgeMap& edges) {
@@ -170,8 +171,9 @@ double thumbnailScore(const EdgeSignature& a, const EdgeSignature& b, int larges
       const cv::Size overlap(kThumbnailWidth - std::abs(x), kThumbnailHeight - std::abs(y));
       const cv::Mat of_a = a.thumbnail(cv::Rect(cv::Point(std::max(0, x), std::max(0, y)), overlap));
       const cv::Mat of_b = b.thumbnail(cv::Rect(cv::Point(std::max(0, -x), std::max(0, -y)), overlap));
-      const double size = std::sqrt(of_a.dot(of_a) * of_b.dot(of_b));
-      if (size > 0) best = std::max(best, of_a.dot(of_b) / size);
+      const double energy_a = of_a.dot(of_a), energy_b = of_b.dot(of_b);
+      if (std::min(energy_a, energy_b) < kPlain * overlap.area()) continue;
+      best = std::max(best, of_a.dot(of_b) / std::sqrt(energy_a * energy_b));
     }
   }
   return best == -1 ? 0 : best;

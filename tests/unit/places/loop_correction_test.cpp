@@ -1,0 +1,176 @@
+#include "places/loop_correction.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "mapping/global_adjustment.h"
+#include "places/loop_closing.h"
+#include "unit/places/made_place.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr int kTurn = 24;  // keyframes of a whole turn
+
+bool sortedAndWhole(const Map& map) {
+  for (const Keyframe& keyframe : map.keyframes) {
+    for (std::size_t i = 1; i < keyframe.observations.size(); ++i) {
+      if (keyframe.observations[i - 1].point >= keyframe.observations[i].point) return false;
+    }
+  }
+  for (const auto& [id, point] : map.points) {
+    for (std::size_t i = 0; i < point.seen_in.size(); ++i) {
+      if (i > 0 && point.seen_in[i - 1] >= point.seen_in[i]) return false;
+      if (point.seen_in[i] == point.host) return false;
+      if (!findObservation(map.keyframes[static_cast<std::size_t>(point.seen_in[i])], id)) return false;
+    }
+  }
+  return true;
+}
+
+Map firstKeyframes(const Map& map, std::size_t count) {
+  Map part;
+  part.keyframes.assign(map.keyframes.begin(), map.keyframes.begin() + static_cast<std::ptrdiff_t>(count));
+  for (auto [id, point] : map.points) {
+    if (static_cast<std::size_t>(point.host) >= count) continue;
+    while (!point.seen_in.empty() && static_cast<std::size_t>(point.seen_in.back()) >= count) point.seen_in.pop_back();
+    if (!point.seen_in.empty()) part.points.emplace(id, point);
+  }
+  return part;
+}
+
+// A turn of 360 degrees and four keyframes more, drifted.
+class LoopCorrectionTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    truth = new std::vector<Pose>(test::turnAround(kTurn, 4));
+    place = new Map(test::makePlace(7, test::placeCamera(), *truth));
+    test::addDrift(0.006, 0.002, *place);
+  }
+  static void TearDownTestSuite() {
+    delete place;
+    delete truth;
+  }
+  static std::vector<Pose>* truth;
+  static Map* place;
+  const Camera camera = test::placeCamera();
+
+  LoopCorrection correctionOf(const Map& map) const {
+    const KeyframeId current = kTurn + 1;
+    const LoopVerification loop = verifyLoop(camera, map, current, 1, {}, 1);
+    EXPECT_TRUE(loop.accepted) << loop.reason;
+    LoopCorrection correction;
+    EXPECT_TRUE(computeCorrection(camera, map, current, 1, loop, {}, {}, correction));
+    return correction;
+  }
+};
+
+std::vector<Pose>* LoopCorrectionTest::truth = nullptr;
+Map* LoopCorrectionTest::place = nullptr;
+
+TEST_F(LoopCorrectionTest, TakesTheDriftAway) {
+  Map map = *place;
+  const double before = test::positionError(map, *truth);
+  applyCorrection(correctionOf(map), map);
+  EXPECT_LT(test::positionError(map, *truth), 0.5 * before);
+  ASSERT_TRUE(adjustGlobally(camera, {}, {}, map));
+  EXPECT_LT(test::positionError(map, *truth), 0.1 * before);
+  EXPECT_TRUE(sortedAndWhole(map));
+}
+
+TEST_F(LoopCorrectionTest, PointsStayAttachedToTheirHosts) {
+  Map map = *place;
+  const LoopCorrection correction = correctionOf(map);
+  applyCorrection(correction, map);
+  for (const auto& [id, point] : map.points) {
+    const MapPoint& before = place->points.at(id);
+    const Similarity& move = correction.new_world_S_world[static_cast<std::size_t>(point.host)];
+    EXPECT_LT((worldPosition(map, point) - move * worldPosition(*place, before)).norm(), 1e-9);
+    EXPECT_NEAR(point.inverse_depth_sigma / point.inverse_depth, before.inverse_depth_sigma / before.inverse_depth,
+                1e-12);
+  }
+  EXPECT_EQ(map.keyframes[0].world_T_camera.translation, place->keyframes[0].world_T_camera.translation);
+}
+
+TEST_F(LoopCorrectionTest, OldPointsAreSeenByTheNewSideOnce) {
+  Map map = *place;
+  const LoopCorrection correction = correctionOf(map);
+  EXPECT_GT(correction.observations.size(), 60u);
+  ASSERT_EQ(sharedPoints(map, kTurn + 1)[1], 0);
+  applyCorrection(correction, map);
+  EXPECT_GT(sharedPoints(map, kTurn + 1)[1], 30);
+  EXPECT_TRUE(sortedAndWhole(map));
+
+  Map twice = map;
+  LoopCorrection still = correction;
+  for (Similarity& move : still.new_world_S_world) move = {};
+  applyCorrection(still, twice);
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    EXPECT_EQ(twice.keyframes[k].observations.size(), map.keyframes[k].observations.size());
+  }
+  EXPECT_TRUE(sortedAndWhole(twice));
+}
+
+TEST_F(LoopCorrectionTest, AMapThatWentOnGoesAlong) {
+  const Map then = firstKeyframes(*place, kTurn + 2);
+  const LoopCorrection correction = correctionOf(then);
+  ASSERT_EQ(correction.new_world_S_world.size(), static_cast<std::size_t>(kTurn + 2));
+  Map now = *place;
+  now.points.erase(correction.observations.front().observation.point);
+  applyCorrection(correction, now);
+  const Similarity& last = correction.new_world_S_world.back();
+  for (std::size_t k = kTurn + 2; k < now.keyframes.size(); ++k) {
+    const Eigen::Vector3d moved = last * place->keyframes[k].world_T_camera.translation;
+    EXPECT_LT((now.keyframes[k].world_T_camera.translation - moved).norm(), 1e-12);
+  }
+  EXPECT_TRUE(sortedAndWhole(now));
+  Map untouched = now;
+  applyCorrection({}, untouched);
+  EXPECT_EQ(untouched.keyframes[3].world_T_camera.translation, now.keyframes[3].world_T_camera.translation);
+}
+
+TEST_F(LoopCorrectionTest, LoopClosingFindsTheReturnAndNothingBefore) {
+  LoopClosingOptions options;
+  options.detection.recent_keyframes = 8;
+  LoopClosing closing(camera, options);
+  bool closed = false;
+  for (std::size_t count = 1; count <= place->keyframes.size(); ++count) {
+    const Map map = firstKeyframes(*place, count);
+    const LoopOutcome outcome = closing.addKeyframe(map);
+    EXPECT_EQ(outcome.current, static_cast<KeyframeId>(count) - 1);
+    EXPECT_LE(outcome.considered.size(), 3u);
+    for (const JudgedLoop& judged : outcome.considered) {
+      EXPECT_FALSE(judged.reason.empty());
+      if (!judged.accepted) continue;
+      const int turned = (outcome.current - judged.keyframe + kTurn / 2) % kTurn - kTurn / 2;  // keyframes
+      EXPECT_LT(std::abs(turned), 4);
+    }
+    if (outcome.correction) {
+      EXPECT_GE(count, static_cast<std::size_t>(kTurn - 3));
+      closed = true;
+    }
+  }
+  EXPECT_TRUE(closed);
+  // A map begun anew is taken as one.
+  EXPECT_FALSE(closing.addKeyframe(firstKeyframes(*place, 1)).correction);
+}
+
+TEST_F(LoopCorrectionTest, NoDriftIsThatLarge) {
+  LoopClosingOptions options;
+  options.detection.recent_keyframes = 8;
+  options.largest_drift = 1e-4;
+  LoopClosing closing(camera, options);
+  bool refused = false;
+  for (std::size_t count = 1; count <= place->keyframes.size(); ++count) {
+    const LoopOutcome outcome = closing.addKeyframe(firstKeyframes(*place, count));
+    EXPECT_FALSE(outcome.correction);
+    for (const JudgedLoop& judged : outcome.considered) {
+      refused = refused || judged.reason.find("would move the keyframe") != std::string::npos;
+    }
+  }
+  EXPECT_TRUE(refused);
+}
+
+}  // namespace
+}  // namespace edgeslam
