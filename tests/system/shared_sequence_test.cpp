@@ -1,0 +1,39 @@
+// The sequences that are kept beside the source folder, where they are; their README says what each is for. Bounds are
+// the "must" values of its targets.json.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "system/program.h"
+
+namespace edgeslam {
+namespace {
+
+struct Expected {
+  std::string sequence;
+  double error_m;
+};
+
+void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.sequence; }
+
+class SharedSequence : public ::testing::TestWithParam<Expected> {};
+
+TEST_P(SharedSequence, StaysWithinTheErrorBound) {
+  const std::string input = std::string(EDGESLAM_SOURCE_DIR) + "/../shared/data/" + GetParam().sequence;
+  if (!std::filesystem::exists(input)) GTEST_SKIP() << input << " is not there";
+  const TemporaryFolder folder;
+  const Outcome outcome = runProgram({"replay", input, "--output", folder.path("result"), "--drawings", "0"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.messages;
+  const auto summary = nlohmann::json::parse(fileContent(folder.path("result/summary.json")));
+  EXPECT_LT(summary["absolute_trajectory_error"]["trajectory"]["rmse_m"].get<double>(), GetParam().error_m);
+  EXPECT_GE(summary["coverage_from_first_pose"].get<double>(), 0.97);
+  EXPECT_LE(summary["first_pose_s"].get<double>(), 3.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, SharedSequence,
+                         ::testing::Values(Expected{"notex_far", 0.03}, Expected{"tex_near", 0.005},
+                                           Expected{"xyz", 0.0035}),
+                         [](const auto& sequence) { return sequence.param.sequence; });
+
+}  // namespace
+}  // namespace edgeslam
