@@ -144,6 +144,7 @@ void tell(const RunResult& result, const std::optional<Trajectory>& ground_truth
   std::printf("poses for %zu frames, %.1f %% from the first pose on; %zu keyframes, %zu map points\n", posed,
               100.0 * static_cast<double>(posed) / static_cast<double>(frames.size() - first), result.keyframes.size(),
               result.map_points.size());
+  for (const std::string& event : result.events) std::printf("%s\n", event.c_str());
   if (ground_truth) {
     try {
       const AbsoluteError error = absoluteError(estimate, *ground_truth, Alignment::similarity);

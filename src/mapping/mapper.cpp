@@ -8,6 +8,7 @@ std::optional<MapView> Mapper::add(const TrackedFrame& frame) {
   if (frame.keyframe == 0) {  // a start, or a new one
     initialised_ = false;
     map_ = Map();
+    last_global_ = 0;
     candidates_.clear();
     origin_frame_ = frame.frame_index;
     initialisation_.start(frame);
@@ -46,10 +47,52 @@ void Mapper::addKeyframe(const TrackedFrame& frame) {
   ++version_;
 }
 
-MapView Mapper::view() const {
+RecoveryResult Mapper::recover(const TrackedFrame& lost) {
+  RecoveryResult result;
+  if (!options_.recovery_enabled || !initialised_ || map_.keyframes.size() < 2) {
+    result.reason = "no map to go on from";
+    return result;
+  }
+  const Keyframe& last = map_.keyframes.back();
+  result = recoverTrackLoss(camera_, map_.keyframes[map_.keyframes.size() - 2], last, lost, options_.recovery);
+  if (!result.found) return result;
+  for (const RecoveredPoint& recovered : result.points) {
+    MapPoint point;
+    point.id = recovered.id;
+    point.host = last.id;
+    point.host_bearing = recovered.host_bearing;
+    point.inverse_depth = recovered.inverse_depth;
+    point.inverse_depth_sigma = recovered.inverse_depth_sigma;
+    point.corner = recovered.corner;
+    point.chain = recovered.chain;
+    point.order = recovered.order;
+    map_.points.emplace(point.id, std::move(point));  // what is mapped already keeps its place
+    candidates_.erase(recovered.id);
+  }
+  TrackedFrame found = lost;
+  found.world_T_camera = result.world_T_camera;
+  found.reason = "recovery";
+  addKeyframe(found);
+  return result;
+}
+
+bool Mapper::adjustAll(bool at_once) {
+  if (!initialised_) return false;
+  const Keyframe& latest = map_.keyframes.back();
+  const Keyframe& last = map_.keyframes[static_cast<std::size_t>(last_global_)];
+  const bool due = latest.id - last.id >= options_.global_interval_keyframes ||
+                   static_cast<double>(latest.time_ns - last.time_ns) * 1e-9 >= options_.global_interval_s;
+  if (!due && !at_once) return false;
+  last_global_ = latest.id;
+  if (!adjustGlobally(camera_, options_.global_adjustment, options_.local_adjustment, map_)) return false;
+  ++version_;
+  return true;
+}
+
+MapView Mapper::view(KeyframeId centre) const {
   MapView view;
   if (initialised_) {
-    view = viewOfMap(map_, options_.view);
+    view = viewOfMap(map_, centre >= 0 ? centre : map_.keyframes.back().id, options_.view);
   } else {
     initialisation_.writeProvisional(view);
     view.waiting_for = initialisation_.waitingFor();

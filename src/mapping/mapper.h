@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "mapping/global_adjustment.h"
 #include "mapping/initialisation.h"
 #include "mapping/local_adjustment.h"
 #include "mapping/new_points.h"
+#include "mapping/track_loss_recovery.h"
 #include "mapping/view_of_map.h"
 
 namespace edgeslam {
@@ -16,6 +18,11 @@ struct MapperOptions {
   InitialisationOptions initialisation;
   NewPointOptions new_points;
   LocalAdjustmentOptions local_adjustment;
+  GlobalAdjustmentOptions global_adjustment;
+  int global_interval_keyframes = 25;   // P20: from one global adjustment to the next ...
+  double global_interval_s = 25;        // ... at the latest
+  bool recovery_enabled = true;
+  RecoveryOptions recovery;
   ViewOptions view;
 };
 
@@ -27,6 +34,20 @@ class Mapper {
   // Takes over a frame. Returns a new view of the map where it changed.
   std::optional<MapView> add(const TrackedFrame& frame);
 
+  // P21: the lost frame's tracks, all without pose, and the last two keyframes. Where it is found the frame becomes a
+  // keyframe and its tracks map points; `view()` then shows it.
+  RecoveryResult recover(const TrackedFrame& lost);
+  // P20 where it is due, or at once (after a loop was closed). True where the map changed.
+  bool adjustAll(bool at_once);
+  // For corrections of the map as a whole (loop closing).
+  template <typename Correct>
+  void correct(const Correct& apply) {
+    apply(map_);
+    ++version_;
+  }
+  // The map as tracking gets to see it; `centre` -1: around the latest keyframe.
+  MapView view(KeyframeId centre = -1) const;
+
   bool initialised() const { return initialised_; }
   const Map& map() const { return map_; }
   const std::string& initialisationDescription() const { return initialisation_.description(); }
@@ -35,7 +56,6 @@ class Mapper {
 
  private:
   void addKeyframe(const TrackedFrame& frame);
-  MapView view() const;
 
   Camera camera_;
   MapperOptions options_;
@@ -45,6 +65,7 @@ class Mapper {
   bool initialised_ = false;
   std::uint64_t version_ = 0;
   std::int64_t origin_frame_ = -1;
+  KeyframeId last_global_ = 0;          // latest keyframe at the last global adjustment
   std::vector<std::pair<std::int64_t, Pose>> early_poses_;  // keyframe0_T_camera
 };
 

@@ -20,13 +20,13 @@ double medianDepth(const Map& map, const Keyframe& keyframe) {
 }
 
 // By keyframe: whether its points are in the view.
-std::vector<char> keyframesInView(const Map& map, const ViewOptions& options) {
-  const Keyframe& latest = map.keyframes.back();
+std::vector<char> keyframesInView(const Map& map, KeyframeId centre, const ViewOptions& options) {
+  const Keyframe& latest = map.keyframes[static_cast<std::size_t>(centre)];
   const double reach = options.largest_distance * medianDepth(map, latest);
   std::vector<char> in_view(map.keyframes.size(), 0);
   std::vector<std::pair<double, KeyframeId>> near;
   for (const Keyframe& keyframe : map.keyframes) {
-    if (keyframe.id + options.latest_keyframes > latest.id) {
+    if (keyframe.id <= latest.id && keyframe.id + options.latest_keyframes > latest.id) {
       in_view[static_cast<std::size_t>(keyframe.id)] = 1;
       continue;
     }
@@ -61,11 +61,11 @@ void writeSource(const Map& map, const MapPoint& point, ViewPoint& view_point) {
 
 }  // namespace
 
-MapView viewOfMap(const Map& map, const ViewOptions& options) {
+MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options) {
   MapView view;
   for (const Keyframe& keyframe : map.keyframes) view.keyframe_poses.push_back(keyframe.world_T_camera);
   view.keyframe_images.resize(map.keyframes.size());
-  const std::vector<char> in_view = keyframesInView(map, options);
+  const std::vector<char> in_view = keyframesInView(map, centre, options);
   for (const auto& [id, point] : map.points) {
     const auto seen = [&](KeyframeId keyframe) { return in_view[static_cast<std::size_t>(keyframe)] != 0; };
     if (!seen(point.host) && std::none_of(point.seen_in.begin(), point.seen_in.end(), seen)) continue;

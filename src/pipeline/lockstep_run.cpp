@@ -23,10 +23,18 @@ TrackingState stateOf(FrameState state) {
   return TrackingState::lost;
 }
 
+double millisecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
 }  // namespace
 
 LockstepRun::LockstepRun(const Camera& camera, const Settings& settings, std::int64_t expected_frames, int drawings)
-    : settings_(settings), tracker_(camera, settings.tracking), mapper_(camera, settings.mapping) {
+    : settings_(settings),
+      tracker_(camera, settings.tracking),
+      mapper_(camera, settings.mapping),
+      relocalisation_(camera, settings.relocalisation),
+      loop_closing_(camera, settings.loops) {
   result_.camera = camera;
   if (drawings <= 0) {
     drawing_interval_ = 0;
@@ -40,6 +48,8 @@ const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns
   TrackingOutcome outcome = tracker_.track(index, time_ns, grey);
   FrameRecord& frame = record(index, time_ns, outcome);
   hand(std::move(outcome.for_mapping), frame);
+  lost_frames_ = frame.state == TrackingState::lost ? lost_frames_ + 1 : 0;
+  if (lost_frames_ > 0) findAgain(frame);
   if (drawing_interval_ > 0 && processed_ % drawing_interval_ == 0) draw(grey, frame);
   ++processed_;
   return frame;
@@ -62,12 +72,90 @@ void LockstepRun::takeDueViews() {
 void LockstepRun::hand(std::vector<TrackedFrame> frames, FrameRecord& record) {
   const auto start = std::chrono::steady_clock::now();
   for (const TrackedFrame& frame : frames) {
-    if (std::optional<MapView> view = mapper_.add(frame)) {
-      views_.push_back({processed_ + std::max(1, settings_.view_delay_frames), std::move(*view)});
+    std::optional<MapView> view = mapper_.add(frame);
+    if (!view) continue;
+    if (mapper_.initialised()) lookForLoop(record);
+    views_.push_back({processed_ + std::max(1, settings_.view_delay_frames), mapper_.view()});
+  }
+  record.stage_ms["mapping"] = millisecondsSince(start);
+}
+
+// Places: the new keyframes are made known to relocalisation, and compared with the old ones.
+void LockstepRun::lookForLoop(FrameRecord& record) {
+  const Map& map = mapper_.map();
+  const auto count = static_cast<KeyframeId>(map.keyframes.size());
+  if (count <= keyframes_known_) {  // a map begun anew
+    keyframes_known_ = 0;
+    relocalisation_.clear();
+  }
+  for (; keyframes_known_ < count; ++keyframes_known_) {
+    relocalisation_.addKeyframe(map.keyframes[static_cast<std::size_t>(keyframes_known_)]);
+  }
+  bool closed = false;
+  if (settings_.loops.enabled) {
+    const LoopOutcome outcome = loop_closing_.addKeyframe(map);
+    for (const JudgedLoop& loop : outcome.considered) {
+      tell(record, "loop of keyframe " + std::to_string(outcome.current) + " to keyframe " + std::to_string(loop.keyframe) +
+                       (loop.accepted ? " closed: " : " refused: ") + loop.reason);
+    }
+    if (outcome.correction) {
+      mapper_.correct([&](Map& corrected) { applyCorrection(*outcome.correction, corrected); });
+      ++result_.loops;
+      closed = true;
     }
   }
-  record.stage_ms["mapping"] =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  mapper_.adjustAll(closed);
+}
+
+// The frame's pose is lost: recovery by its tracks (P21), then the map as a whole (P22).
+void LockstepRun::findAgain(FrameRecord& record) {
+  if (!tracker_.hasLostFrame() || !mapper_.initialised()) return;
+  const auto start = std::chrono::steady_clock::now();
+  const auto next_keyframe = static_cast<KeyframeId>(mapper_.map().keyframes.size());
+  if (lost_frames_ <= 10) {
+    const RecoveryResult recovery = mapper_.recover(tracker_.lostFrame(next_keyframe));
+    if (recovery.found) {
+      ++result_.recoveries;
+      tell(record, "recovered from three keyframes, " + std::to_string(recovery.inliers) + " points");
+      const Pose pose = mapper_.map().keyframes.back().world_T_camera;
+      goOnFrom(record, TrackingState::recovered, pose, recovery.covariance, next_keyframe, {});
+    }
+  }
+  if (record.state == TrackingState::lost && settings_.relocalisation_enabled &&
+      lost_frames_ % std::max(1, settings_.relocalisation_interval) == 0) {
+    const RelocalisationResult found = relocalisation_.relocalise(mapper_.map(), tracker_.lostImages(), tracker_.lostEdges());
+    if (found.found) {
+      ++result_.relocalisations;
+      tell(record, "relocalised at keyframe " + std::to_string(found.keyframe) + ", " + std::to_string(found.evidence.inliers) +
+                       " of " + std::to_string(found.evidence.visible) + " points");
+      std::vector<FoundAgain> points;
+      for (const MatchedPoint& match : found.matches) points.push_back({match.point, match.measurement, match.corner});
+      goOnFrom(record, TrackingState::relocalised, found.world_T_camera, found.pose.covariance, found.keyframe, points);
+    } else {
+      record.reason = "not found again in the map: " + found.reason;
+    }
+  }
+  record.stage_ms["places"] = millisecondsSince(start);
+}
+
+void LockstepRun::goOnFrom(FrameRecord& record, TrackingState state, const Pose& world_T_camera, const Matrix6d& covariance,
+                           KeyframeId centre, const std::vector<FoundAgain>& points) {
+  views_.clear();
+  tracker_.resume(mapper_.view(centre), world_T_camera, covariance, points);
+  record.state = state;
+  record.reason.clear();
+  record.has_live_pose = true;
+  record.live_world_T_camera = world_T_camera;
+  record.covariance = covariance;
+  record.mapped_points = static_cast<int>(points.size());
+  references_.back() = centre;
+  reference_T_camera_.back() =
+      mapper_.map().keyframes[static_cast<std::size_t>(centre)].world_T_camera.inverse() * world_T_camera;
+  lost_frames_ = 0;
+}
+
+void LockstepRun::tell(const FrameRecord& record, const std::string& event) {
+  result_.events.push_back("frame " + std::to_string(record.index) + ": " + event);
 }
 
 FrameRecord& LockstepRun::record(std::int64_t index, std::int64_t time_ns, const TrackingOutcome& outcome) {

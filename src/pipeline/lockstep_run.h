@@ -8,6 +8,8 @@
 #include "mapping/mapper.h"
 #include "pipeline/run_result.h"
 #include "pipeline/settings.h"
+#include "places/loop_closing.h"
+#include "places/relocalisation.h"
 #include "tracking/tracker.h"
 
 namespace edgeslam {
@@ -32,12 +34,21 @@ class LockstepRun {
 
   void takeDueViews();
   void hand(std::vector<TrackedFrame> frames, FrameRecord& record);
+  void lookForLoop(FrameRecord& record);
+  void findAgain(FrameRecord& record);
+  void goOnFrom(FrameRecord& record, TrackingState state, const Pose& world_T_camera, const Matrix6d& covariance,
+                KeyframeId centre, const std::vector<FoundAgain>& points);
+  void tell(const FrameRecord& record, const std::string& event);
   FrameRecord& record(std::int64_t index, std::int64_t time_ns, const TrackingOutcome& outcome);
   void draw(const cv::Mat& grey, const FrameRecord& record);
 
   Settings settings_;
   Tracker tracker_;
   Mapper mapper_;
+  Relocalisation relocalisation_;
+  LoopClosing loop_closing_;
+  KeyframeId keyframes_known_ = 0;   // to places
+  int lost_frames_ = 0;              // in a row
   RunResult result_;
   std::deque<DueView> views_;
   std::int64_t processed_ = 0;

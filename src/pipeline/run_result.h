@@ -75,6 +75,10 @@ struct RunResult {
   std::vector<KeyframeRecord> keyframes;
   std::vector<MapPointRecord> map_points;
   std::vector<DrawnFrame> drawings;
+  std::vector<std::string> events;  // recoveries, relocalisations, loops accepted and refused: "frame 120: ..."
+  int recoveries = 0;               // P21
+  int relocalisations = 0;          // P22
+  int loops = 0;                    // closed
   std::string initialisation;    // how the map was started: method, pair, quality factor
   std::int64_t unreadable_frames = 0;
   double wall_s = 0;             // of the whole run

@@ -10,6 +10,7 @@ namespace edgeslam {
 TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey) {
   TrackingOutcome outcome;
   StageClock clock(outcome.times);
+  lost_ = TrackedState();
   TrackedState frame = prepare(frame_index, time_ns, grey, clock);
   if (isBlurred(blur_gate_, sharpness(grey, frame.edges), options_.blur_gate) && last_.images) {
     const StageTimes times = outcome.times;
@@ -23,7 +24,9 @@ TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, c
     return outcome;
   }
 
-  bool located = followAndLocate(last_, frame, clock);
+  const bool given_up =
+      lost_since_ns_ >= 0 && static_cast<double>(time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds;
+  bool located = !given_up && followAndLocate(last_, frame, clock);
   if (!view_.initialised && (!located || static_cast<double>(frame.tracks.size()) <
                                              options_.restart_share * static_cast<double>(tracks_at_start_))) {
     startMap(std::move(frame), outcome);
@@ -49,13 +52,13 @@ TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, c
     clock.finished("map reuse");
   }
   if (!located) {
-    const StageTimes times = outcome.times;
-    std::vector<TrackedFrame> for_mapping = std::move(outcome.for_mapping);
-    outcome = skip(time_ns, "map points not found again");
-    outcome.state = FrameState::lost;
-    outcome.times = times;
-    outcome.for_mapping = std::move(for_mapping);
-    return outcome;
+    TrackingOutcome lost = skip(time_ns, "map points not found again");
+    lost.state = FrameState::lost;
+    lost.times = outcome.times;
+    lost.for_mapping = std::move(outcome.for_mapping);
+    if (lost_since_ns_ < 0) lost_since_ns_ = time_ns;
+    lost_ = std::move(frame);
+    return lost;
   }
 
   outcome.state = view_.initialised ? FrameState::tracking : FrameState::initialising;
@@ -125,7 +128,9 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
   estimate = estimatePose(camera_, view_, frame.tracks, estimate.result.world_T_camera, options_.pose);
   const auto in_view = static_cast<double>(estimate.track_of_observation.size());
   // A flat map fits a scene with depth only here and there: before the map stands no share of inliers is asked for.
-  const double fewest_inliers = view_.initialised ? options_.least_inlier_share * in_view : 0.0;
+  const double fewest_inliers = !view_.initialised      ? 0.0
+                                : lost_since_ns_ >= 0   ? options_.regain_inlier_share * in_view
+                                                        : options_.least_inlier_share * in_view;
   if (!estimate.result.converged || estimate.result.inlier_count < fewest_inliers) return false;
   frame.pose = estimate.result;
   frame.world_T_camera = estimate.result.world_T_camera;
@@ -263,6 +268,7 @@ TrackingOutcome Tracker::skip(std::int64_t time_ns, const std::string& reason) c
 }
 
 void Tracker::remember(TrackedState frame) {
+  lost_since_ns_ = -1;
   const std::int64_t interval_ns = frame.images->time_ns - last_.images->time_ns;
   last_T_next_ = last_.world_T_camera.inverse() * frame.world_T_camera;
   interval_ns_ = interval_ns;
@@ -271,6 +277,36 @@ void Tracker::remember(TrackedState frame) {
   const auto tracks = static_cast<double>(frame.tracks.size());
   average_tracks_ = average_tracks_ == 0 ? tracks : 0.95 * average_tracks_ + 0.05 * tracks;
   last_ = std::move(frame);
+}
+
+void Tracker::resume(const MapView& view, const Pose& world_T_camera, const Matrix6d& covariance,
+                     const std::vector<FoundAgain>& points) {
+  TrackedState frame = std::move(lost_);
+  lost_ = TrackedState();
+  if (!points.empty()) frame.tracks.clear();
+  for (const FoundAgain& found : points) {
+    Track track;
+    track.id = found.point;
+    track.pixel = track.last_keyframe_pixel = found.measurement.pixel.cast<float>();
+    track.normal = found.measurement.normal.cast<float>();
+    track.corner = found.corner;
+    track.sigma_normal = static_cast<float>(found.measurement.sigma_normal);
+    track.sigma_tangent = static_cast<float>(found.measurement.sigma_tangent);
+    frame.tracks.push_back(track);
+  }
+  std::sort(frame.tracks.begin(), frame.tracks.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
+  frame.world_T_camera = world_T_camera;
+  frame.pose.covariance = covariance;
+  view_ = view;
+  next_keyframe_ = static_cast<KeyframeId>(view.keyframe_poses.size());
+  last_ = std::move(frame);
+  last_T_next_ = Pose();
+  interval_ns_ = 0;
+  lost_since_ns_ = -1;
+  keyframe_time_ns_ = last_.images->time_ns;
+  frames_since_keyframe_ = options_.keyframes.least_frames_apart;
+  mapped_at_keyframe_ = options_.keyframes.fewest_mapped * 2;  // asks for a keyframe with fresh points
+  average_tracks_ = 0;
 }
 
 void Tracker::adopt(const MapView& view) {

@@ -35,6 +35,8 @@ struct TrackerOptions {
   int fewest_tracks = 30;            // fewer are not enough to start a map with
   double restart_share = 0.5;        // of the first frame's tracks: fewer left, and the initialisation starts anew
   int outlier_frames = 4;            // a track whose map point misses the pose so often in a row is dropped
+  double regain_inlier_share = 0.6;  // likewise of the first pose after a loss
+  double regain_seconds = 0.7;       // so long after a loss the last tracked frame's points are still looked for
   double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed
 };
 
@@ -53,6 +55,13 @@ struct TrackingOutcome {
   StageTimes times;
 };
 
+// A map point found again in a frame whose pose was lost.
+struct FoundAgain {
+  PointId point = 0;
+  Measurement measurement;
+  bool corner = false;
+};
+
 class Tracker {
  public:
   Tracker(const Camera& camera, const TrackerOptions& options)
@@ -66,6 +75,16 @@ class Tracker {
 
   // An unreadable frame: a pose from motion alone.
   TrackingOutcome skip(std::int64_t time_ns, const std::string& reason) const;
+
+  // The last frame where its pose was lost: its images, edges, and its tracks without a pose. Valid until the next frame.
+  bool hasLostFrame() const { return lost_.images != nullptr; }
+  const FrameImages& lostImages() const { return *lost_.images; }
+  const EdgeMap& lostEdges() const { return lost_.edges; }
+  TrackedFrame lostFrame(KeyframeId keyframe) const { return describe(lost_, keyframe, ""); }
+  // The lost frame's pose was found after all: tracking goes on from it with the points found, or, where none are given,
+  // with the tracks that it had. `view` shows the map around it.
+  void resume(const MapView& view, const Pose& world_T_camera, const Matrix6d& covariance,
+              const std::vector<FoundAgain>& points);
 
   // The last tracked frame, for drawings.
   const std::vector<Track>& tracks() const { return last_.tracks; }
@@ -98,6 +117,8 @@ class Tracker {
   std::vector<RotationGrid> rotation_grids_;
   MapView view_;
   BlurGate blur_gate_;
+  TrackedState lost_;               // the current frame where its pose was not found
+  std::int64_t lost_since_ns_ = -1; // -1: not lost
   TrackedState last_;             // the last frame that was tracked
   Pose last_T_next_;              // motion from the last tracked frame to the next, one frame interval ahead
   std::int64_t interval_ns_ = 0;  // that the motion was measured over
