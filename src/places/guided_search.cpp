@@ -151,6 +151,11 @@ std::string reasonToRefuse(const PoseEvidence& evidence, const GuidedSearchOptio
       evidence.corner_inliers < options.corner_share * evidence.visible_corners) {
     return of(evidence.corner_inliers, evidence.visible_corners, "corners in view agree");
   }
+  // Without corners to tell one place from another that looks alike, nothing may be left over.
+  if (evidence.corner_inliers < options.telling_corners && evidence.explained < options.explained_share) {
+    return "only " + std::to_string(static_cast<int>(100 * evidence.explained)) +
+           " % of the frame's edges are the map's";
+  }
   if (evidence.cells < options.fewest_cells) return "what agrees covers too little of the image";
   if (!(evidence.position_sigma < options.position_sigma)) return "what agrees leaves the position undetermined";
   if (!(evidence.rotation_sigma_deg < options.rotation_sigma_deg)) {
@@ -248,7 +253,13 @@ GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std:
   }
   PoseEvidence& evidence = result.evidence;
   evidence.cells = cellsCovered(camera, result.inliers);
-  evidence.position_sigma = largestSigma(last.pose.covariance.topLeftCorner<3, 3>()) / medianOf(std::move(distances));
+  evidence.median_distance = medianOf(std::move(distances));
+  evidence.position_sigma = largestSigma(last.pose.covariance.topLeftCorner<3, 3>()) / evidence.median_distance;
+  std::vector<KeyframeId> keyframes;
+  const Pose& pose = last.pose.world_T_camera;
+  const std::vector<SearchPoint> around = searchPoints(map, points, pose, keyframes);
+  evidence.explained =
+      explainedShare(edges, visiblePoints(camera, around, pose, options.search), options.explained_edges);
   evidence.rotation_sigma_deg = largestSigma(last.pose.covariance.bottomRightCorner<3, 3>()) * 180 / M_PI;
   result.reason = reasonToRefuse(evidence, options);
   result.accepted = result.reason.empty();

@@ -10,6 +10,7 @@
 #include "edges/edge_detection.h"
 #include "edges/point_choice.h"
 #include "map/map.h"
+#include "places/explained_edges.h"
 #include "tracking/map_search.h"
 
 namespace edgeslam {
@@ -23,9 +24,12 @@ struct GuidedSearchOptions {
   double screening_radius = 20;  // [px]
   int neighbours = 6;            // covisible keyframes whose points are searched for too
   int fewest_inliers = 30;
-  double inlier_share = 0.5;      // of the points that should be visible
-  double corner_share = 0.4;      // likewise of the corners, where there are some ...
-  int fewest_corners = 8;         // ... that is, so many
+  double inlier_share = 0.5;     // of the points that should be visible
+  double corner_share = 0.4;     // likewise of the corners, where there are some ...
+  int fewest_corners = 8;        // ... that is, so many
+  int telling_corners = 25;      // fewer corners in agreement do not tell one place from another: then ...
+  double explained_share = 0.8;  // ... so much of the frame's edges must be the map's
+  ExplainedEdgesOptions explained_edges;
   int fewest_cells = 5;           // of a grid of 4 x 4 over the image that inliers lie in
   double position_sigma = 0.02;   // largest standard deviation of the position, share of the points' median distance
   double rotation_sigma_deg = 1;  // and of the rotation
@@ -48,6 +52,8 @@ struct PoseEvidence {
   int cells = 0;                  // of a grid of 4 x 4 over the image, that inliers lie in
   double position_sigma = 0;      // largest standard deviation of the position, share of the points' median distance
   double rotation_sigma_deg = 0;  // and of the rotation
+  double median_distance = 0;     // of the points in agreement from the camera [map units]
+  double explained = 0;           // share of the frame's edges that are the map's
 
   double share() const { return visible > 0 ? static_cast<double>(inliers) / visible : 0.0; }
 };

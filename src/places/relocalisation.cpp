@@ -14,7 +14,23 @@ DescribedPoints describeAtTwoSizes(const cv::Mat& grey, const std::vector<Eigen:
   return described;
 }
 
+bool isReachable(const std::optional<Reachable>& reachable, const Pose& pose, double widening) {
+  return !reachable || (pose.translation - reachable->centre).norm() <= widening * reachable->distance;
+}
+
 }  // namespace
+
+Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double seconds) {
+  double fastest = 0, farthest = 0;
+  for (std::size_t k = 1; k < map.keyframes.size(); ++k) {
+    const Keyframe &a = map.keyframes[k - 1], &b = map.keyframes[k];
+    const double distance = (b.world_T_camera.translation - a.world_T_camera.translation).norm();
+    const double elapsed = 1e-9 * static_cast<double>(b.time_ns - a.time_ns);
+    farthest = std::max(farthest, distance);
+    if (elapsed > 0) fastest = std::max(fastest, distance / elapsed);
+  }
+  return {world_T_camera.translation, std::max(farthest, 2 * fastest * seconds)};
+}
 
 void Relocalisation::addKeyframe(const Keyframe& keyframe) {
   if (!keyframe.images) return;
@@ -40,16 +56,36 @@ std::vector<Relocalisation::Candidate> Relocalisation::candidates(const Map& map
     ranked.push_back({id, matchShifted(known.thumbnail, thumbnail)});
   }
   std::stable_sort(ranked.begin(), ranked.end(), better);
-  if (static_cast<int>(ranked.size()) > options_.compared_turned)
-    ranked.resize(static_cast<std::size_t>(options_.compared_turned));
+  ranked = differentPlaces(map, ranked, 2 * options_.candidates_of_place, options_.compared_turned);
   for (Candidate& candidate : ranked)
     candidate.match = matchTurned(keyframes_.at(candidate.keyframe).thumbnail, thumbnail);
   std::stable_sort(ranked.begin(), ranked.end(), better);
-  while (!ranked.empty() && (static_cast<int>(ranked.size()) > options_.candidates ||
-                             ranked.back().match.correlation < options_.least_correlation)) {
-    ranked.pop_back();
+  while (!ranked.empty() && ranked.back().match.correlation < options_.least_correlation) ranked.pop_back();
+  return differentPlaces(map, ranked, options_.candidates_of_place, options_.candidates);
+}
+
+// The first `wanted` candidates but, as long as there are others, no more than `of_place` of one place: what repeats
+// must be seen to repeat.
+std::vector<Relocalisation::Candidate> Relocalisation::differentPlaces(const Map& map,
+                                                                       const std::vector<Candidate>& ranked,
+                                                                       int of_place, int wanted) const {
+  std::vector<Candidate> chosen, others;
+  for (const Candidate& candidate : ranked) {
+    if (static_cast<int>(chosen.size()) == wanted) return chosen;
+    const std::vector<int> shared = sharedPoints(map, candidate.keyframe);
+    const auto& observations = map.keyframes[static_cast<std::size_t>(candidate.keyframe)].observations;
+    const auto mapped = static_cast<double>(std::count_if(
+        observations.begin(), observations.end(), [&](const auto& o) { return map.points.count(o.point) > 0; }));
+    int of_this_place = 0;
+    for (const Candidate& other : chosen) {
+      of_this_place += shared[static_cast<std::size_t>(other.keyframe)] > options_.same_place_share * mapped ? 1 : 0;
+    }
+    (of_this_place < of_place ? chosen : others).push_back(candidate);
   }
-  return ranked;
+  for (const Candidate& candidate : others) {
+    if (static_cast<int>(chosen.size()) < wanted) chosen.push_back(candidate);
+  }
+  return chosen;
 }
 
 std::optional<Pose> Relocalisation::poseByDescriptors(const Map& map, KeyframeId keyframe,
@@ -101,9 +137,11 @@ std::vector<Relocalisation::Start> Relocalisation::startsByDescriptors(const Map
   return starts;
 }
 
-// A first look from each start, then the best are followed up. True, with the result, at the first that is accepted.
-bool Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map, const FrameImages& current,
-                                const EdgeMap& edges, RelocalisationResult& result) const {
+// A first look from each start, then the best are followed up. The best of what is accepted is the result, unless
+// another pose rivals it.
+void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map, const FrameImages& current,
+                                const EdgeMap& edges, const std::optional<Reachable>& reachable,
+                                RelocalisationResult& result) const {
   struct Screened {
     KeyframeId keyframe;
     std::vector<PointId> points;
@@ -112,6 +150,7 @@ bool Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
   const GuidedSearchOptions& options = options_.guided_search;
   std::vector<Screened> screened;
   for (const Start& start : starts) {
+    if (!isReachable(reachable, start.world_T_camera, 2)) continue;  // it is a guess yet
     Screened look{start.keyframe, pointsAround(map, start.keyframe, options.neighbours), {}};
     look.pose = screenPose(camera_, map, look.points, current, edges, start.world_T_camera, options);
     if (look.pose.evidence.share() >= options_.screened_share) screened.push_back(std::move(look));
@@ -119,29 +158,43 @@ bool Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
   std::stable_sort(screened.begin(), screened.end(), [](const Screened& a, const Screened& b) {
     return a.pose.evidence.share() > b.pose.evidence.share();
   });
-  if (static_cast<int>(screened.size()) > options_.refined_poses) {
-    screened.resize(static_cast<std::size_t>(options_.refined_poses));
-  }
+  const auto different = [&](const Pose& pose) {
+    const double distance = (pose.translation - result.world_T_camera.translation).norm();
+    return distance > options_.rival_distance * result.evidence.median_distance ||
+           rotationAngle(pose.rotation, result.world_T_camera.rotation) > options_.rival_rotation_deg * M_PI / 180;
+  };
+  int followed_up = 0;
   for (const Screened& look : screened) {
+    if (result.found && !different(look.pose.world_T_camera)) continue;
+    if (followed_up++ == options_.refined_poses) break;
     GuidedSearchResult search =
         guidedSearch(camera_, map, look.points, current, edges, look.pose.world_T_camera, options);
-    if (!search.accepted && search.evidence.share() <= result.evidence.share()) continue;
+    if (search.accepted && !isReachable(reachable, search.pose.world_T_camera, 1)) {
+      search.accepted = false;
+      search.reason = "what looks like it is out of reach";
+    }
+    const double share = search.evidence.explained, best = result.evidence.explained;
+    if (result.found && search.accepted && different(search.pose.world_T_camera) &&
+        std::min(share, best) > options_.rival_share * std::max(share, best)) {
+      result.found = false;
+      result.matches.clear();
+      result.reason = "two different poses are as good";
+      return;
+    }
+    if (search.accepted == result.found ? share <= best : result.found) continue;
     result.found = search.accepted;
     result.reason = std::move(search.reason);
     result.world_T_camera = search.pose.world_T_camera;
     result.pose = std::move(search.pose);
     result.keyframe = look.keyframe;
     result.evidence = search.evidence;
-    if (result.found) {
-      result.matches = std::move(search.inliers);
-      return true;
-    }
+    result.matches.clear();
+    if (result.found) result.matches = std::move(search.inliers);
   }
-  return false;
 }
 
-RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImages& current,
-                                                const EdgeMap& edges) const {
+RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImages& current, const EdgeMap& edges,
+                                                const std::optional<Reachable>& reachable) const {
   RelocalisationResult result;
   const std::vector<Candidate> tried = candidates(map, makeThumbnail(current.pyramid));
   if (tried.empty()) {
@@ -149,8 +202,9 @@ RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImage
     return result;
   }
   result.reason = "from no keyframe does the map show in this frame";
-  if (searchFrom(startsByTurning(map, tried), map, current, edges, result)) return result;
-  searchFrom(startsByDescriptors(map, tried, current, edges), map, current, edges, result);
+  searchFrom(startsByTurning(map, tried), map, current, edges, reachable, result);
+  if (result.evidence.visible > 0) return result;  // another start would lead to the same pose
+  searchFrom(startsByDescriptors(map, tried, current, edges), map, current, edges, reachable, result);
   return result;
 }
 

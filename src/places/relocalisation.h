@@ -16,17 +16,33 @@ namespace edgeslam {
 struct RelocalisationOptions {
   GuidedSearchOptions guided_search;
   KeyframeMatchingOptions matching;
-  PointChoiceOptions points;       // of the frame, to be matched with the keyframes'
-  int candidates = 5;              // keyframes tried in one frame
-  int matched_candidates = 2;      // of these, matched by descriptors too
-  int refined_poses = 2;           // most poses of one kind that are followed up from a first look
-  double screened_share = 0.25;    // of the points in view that must agree roughly at the first look
+  PointChoiceOptions points;      // of the frame, to be matched with the keyframes'
+  int candidates = 5;             // keyframes tried in one frame
+  int matched_candidates = 2;     // of these, matched by descriptors too
+  int refined_poses = 2;          // most poses of one kind that are followed up from a first look
+  double screened_share = 0.25;   // of the points in view that must agree roughly at the first look
+  double same_place_share = 0.3;  // keyframes that share so many of their points are one place ...
+  int candidates_of_place = 2;    // ... of which so many are tried before others
+  double rival_share =
+      0.85;  // of the frame's edges that the best pose explains: another that explains as many rivals it
+  double rival_distance = 0.05;    // poses farther apart are different: share of the points' median distance ...
+  double rival_rotation_deg = 3;   // ... or this angle
   int compared_turned = 12;        // keyframes of which thumbnails are compared at turns too
   double least_correlation = 0.3;  // of the thumbnails, for a candidate
   int fewest_matches = 8;          // of descriptors, and of these in agreement, for a pose from them
   double descriptor_error = 5;     // reprojection error within which a match agrees [px]
   int ransac_iterations = 150;
 };
+
+// Where the camera can be by now.
+struct Reachable {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // world
+  double distance = 0;                               // [map units]
+};
+
+// From the pose at which the camera was lost `seconds` ago: twice as far as the fastest motion between two keyframes of
+// the map would have led, and never less than the farthest that two successive ones lie apart.
+Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double seconds);
 
 struct RelocalisationResult {
   bool found = false;
@@ -48,9 +64,11 @@ class Relocalisation {
   void removeKeyframe(KeyframeId id) { keyframes_.erase(id); }
   void clear() { keyframes_.clear(); }
 
-  // The pose of a frame of which nothing is known. `map`'s keyframes are those added, where they are now. Same input,
-  // same result.
-  RelocalisationResult relocalise(const Map& map, const FrameImages& current, const EdgeMap& edges) const;
+  // The pose of a frame of which nothing is known but, where given, what can be reached. Where things repeat and two
+  // different poses are as good, there is none. `map`'s keyframes are those added, where they are now. Same input, same
+  // result.
+  RelocalisationResult relocalise(const Map& map, const FrameImages& current, const EdgeMap& edges,
+                                  const std::optional<Reachable>& reachable = std::nullopt) const;
 
  private:
   struct KnownKeyframe {
@@ -71,8 +89,10 @@ class Relocalisation {
   std::vector<Start> startsByTurning(const Map& map, const std::vector<Candidate>& candidates) const;
   std::vector<Start> startsByDescriptors(const Map& map, const std::vector<Candidate>& candidates,
                                          const FrameImages& current, const EdgeMap& edges) const;
-  bool searchFrom(const std::vector<Start>& starts, const Map& map, const FrameImages& current, const EdgeMap& edges,
-                  RelocalisationResult& result) const;
+  void searchFrom(const std::vector<Start>& starts, const Map& map, const FrameImages& current, const EdgeMap& edges,
+                  const std::optional<Reachable>& reachable, RelocalisationResult& result) const;
+  std::vector<Candidate> differentPlaces(const Map& map, const std::vector<Candidate>& ranked, int of_place,
+                                         int wanted) const;
   std::optional<Pose> poseByDescriptors(const Map& map, KeyframeId keyframe, const DescribedPoints& frame) const;
 
   Camera camera_;
