@@ -29,7 +29,8 @@ DescribedPoints describe(const PlaceView& view, int most, double roll) {
   const std::vector<int> chosen = choose(view, most);
   std::vector<Eigen::Vector2f> pixels;
   pixels.reserve(chosen.size());
-  for (const int i : chosen) pixels.push_back(view.points[static_cast<std::size_t>(i)].measurement.pixel.cast<float>());
+  for (const int i : chosen)
+    pixels.emplace_back(view.points[static_cast<std::size_t>(i)].measurement.pixel.cast<float>());
   DescribedPoints described = describePoints(view.images->pyramid.levels[0], pixels, roll);
   for (int& point : described.points) point = chosen[static_cast<std::size_t>(point)];
   return described;

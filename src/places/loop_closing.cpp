@@ -33,7 +33,39 @@ double sceneDistance(const Map& map, KeyframeId keyframe) {
   return *middle;
 }
 
+// Where a loop says that the current keyframe is.
+Pose impliedPose(const Map& map, const JudgedLoop& loop) {
+  const Similarity candidate_S_current = loop.verification.current_S_candidate.inverse();
+  return keyframeOf(map, loop.keyframe).world_T_camera *
+         Pose{candidate_S_current.rotation, candidate_S_current.translation};
+}
+
+bool fewerInliers(const JudgedLoop& a, const JudgedLoop& b) {
+  if (a.accepted != b.accepted) return b.accepted;
+  return a.verification.inliers < b.verification.inliers;
+}
+
 }  // namespace
+
+void refuseContradictions(const Map& map, KeyframeId current, std::vector<JudgedLoop>& loops) {
+  constexpr double largest_turn = 15 * M_PI / 180;  // between what two loops say [rad] ...
+  constexpr double largest_distance = 0.5;          // ... and of the distance of the scene
+  const double distance = largest_distance * sceneDistance(map, current);
+  std::vector<std::size_t> contradicted;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    for (std::size_t j = 0; j < loops.size(); ++j) {
+      if (i == j || !loops[i].accepted || !loops[j].accepted) continue;
+      const Pose one = impliedPose(map, loops[i]), other = impliedPose(map, loops[j]);
+      if (rotationAngle(one.rotation, other.rotation) < largest_turn &&
+          (one.translation - other.translation).norm() < distance) {
+        continue;
+      }
+      contradicted.push_back(i);
+      loops[i].reason = "looks like keyframe " + std::to_string(loops[j].keyframe) + " too, elsewhere";
+    }
+  }
+  for (const std::size_t i : contradicted) loops[i].accepted = false;
+}
 
 LoopOutcome LoopClosing::addKeyframe(const Map& map) {
   LoopOutcome outcome;
@@ -51,20 +83,19 @@ LoopOutcome LoopClosing::addKeyframe(const Map& map) {
   const LoopDetection detection = detectLoops(map, outcome.current, scores, options_.detection);
   outcome.bar = detection.bar;
   for (const LoopCandidate& candidate : detection.candidates) {
-    JudgedLoop judged = judge(map, outcome.current, candidate);
-    if (judged.accepted) {
-      LoopCorrection correction;
-      if (computeCorrection(camera_, map, outcome.current, candidate.keyframe, judged.verification,
-                            options_.verification, options_.correction, correction)) {
-        outcome.correction = std::move(correction);
-        last_loop_ = outcome.current;
-      } else {
-        judged.accepted = false;
-        judged.reason = "the pose graph has no solution";
-      }
-    }
-    outcome.considered.push_back(std::move(judged));
-    if (outcome.correction) break;
+    outcome.considered.push_back(judge(map, outcome.current, candidate));
+  }
+  refuseContradictions(map, outcome.current, outcome.considered);
+  const auto best = std::max_element(outcome.considered.begin(), outcome.considered.end(), fewerInliers);
+  if (best == outcome.considered.end() || !best->accepted) return outcome;
+  LoopCorrection correction;
+  if (computeCorrection(camera_, map, outcome.current, best->keyframe, best->verification, options_.verification,
+                        options_.correction, correction)) {
+    outcome.correction = std::move(correction);
+    last_loop_ = outcome.current;
+  } else {
+    best->accepted = false;
+    best->reason = "the pose graph has no solution";
   }
   return outcome;
 }

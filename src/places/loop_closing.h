@@ -24,8 +24,8 @@ struct LoopClosingOptions {
   LoopDetectionOptions detection;
   LoopVerificationOptions verification;
   LoopCorrectionOptions correction;
-  double largest_turn_deg = 45;  // a loop that would turn the keyframe by more is no drift [deg]
-  double largest_drift = 0.3;    // nor one that would move it by over this share of the way since ...
+  double largest_turn_deg = 25;  // a loop that would turn the keyframe by more is no drift [deg]
+  double largest_drift = 0.2;    // nor one that would move it by over this share of the way since ...
   int pause_keyframes = 5;       // after a loop no other one is looked for, for so many keyframes
   std::uint64_t seed = 1;
 };
@@ -40,10 +40,14 @@ struct JudgedLoop {
 
 struct LoopOutcome {
   KeyframeId current = -1;
-  double bar = 0;                            // P24
-  std::vector<JudgedLoop> considered;        // best score first, up to the accepted one
+  double bar = 0;                      // P24
+  std::vector<JudgedLoop> considered;  // best score first; the correction is from the accepted one with most inliers
   std::optional<LoopCorrection> correction;  // where one was accepted: for mapping to apply
 };
+
+// Accepted loops that put the current keyframe at different places (over 15 degrees or half of the scene's distance
+// apart) are refused, all of them: the scene repeats itself, and none is to be trusted.
+void refuseContradictions(const Map& map, KeyframeId current, std::vector<JudgedLoop>& loops);
 
 class LoopClosing {
  public:

@@ -25,7 +25,7 @@ struct LoopVerificationOptions {
   double needed_share = 0.5;           // ... but this share of the points that both sides have mapped
   double least_found_share = 0.4;      // of the points that should be visible, this share must be found and agree
   int fewest_cells = 5;                // of the image's 16 parts, so many must hold inliers
-  double largest_scale = 3;            // of the similarity, or its inverse
+  double largest_scale = 2;            // of the similarity, or its inverse
 };
 
 struct LoopVerification {

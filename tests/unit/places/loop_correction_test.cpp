@@ -172,5 +172,37 @@ TEST_F(LoopCorrectionTest, NoDriftIsThatLarge) {
   EXPECT_TRUE(refused);
 }
 
+TEST_F(LoopCorrectionTest, LoopsThatContradictEachOtherAreRefused) {
+  const KeyframeId current = kTurn + 1;
+  const auto loopTo = [&](KeyframeId candidate, const Pose& world_T_current) {
+    const Pose current_T_candidate =
+        world_T_current.inverse() * place->keyframes[static_cast<std::size_t>(candidate)].world_T_camera;
+    JudgedLoop loop;
+    loop.keyframe = candidate;
+    loop.accepted = true;
+    loop.verification.current_S_candidate = test::asSimilarity(current_T_candidate);
+    return loop;
+  };
+  const Pose here = place->keyframes[static_cast<std::size_t>(current)].world_T_camera;
+  Pose near = here, away = here, turned = here;
+  near.translation.x() += 0.1;
+  away.translation.x() += 4;
+  turned.rotation = here.rotation * rotationExp({0, M_PI / 2, 0});
+
+  std::vector<JudgedLoop> loops{loopTo(1, here), loopTo(3, near)};
+  refuseContradictions(*place, current, loops);
+  EXPECT_TRUE(loops[0].accepted && loops[1].accepted);
+  for (const Pose& other : {away, turned}) {
+    loops = {loopTo(1, here), loopTo(7, other)};
+    refuseContradictions(*place, current, loops);
+    EXPECT_FALSE(loops[0].accepted || loops[1].accepted);
+    EXPECT_NE(loops[0].reason.find("keyframe 7"), std::string::npos);
+    loops = {loopTo(1, here), loopTo(7, other)};
+    loops[1].accepted = false;  // refused by itself: says nothing
+    refuseContradictions(*place, current, loops);
+    EXPECT_TRUE(loops[0].accepted);
+  }
+}
+
 }  // namespace
 }  // namespace edgeslam
