@@ -144,15 +144,17 @@ PoseEvidence countEvidence(const RoundResult& round) {
 
 // Empty where the pose can be trusted.
 std::string reasonToRefuse(const PoseEvidence& evidence, const GuidedSearchOptions& options) {
-  if (evidence.inliers < std::max<double>(options.fewest_inliers, options.inlier_share * evidence.visible)) {
+  const bool bare = evidence.corner_inliers < options.telling_corners;
+  const double inlier_share = bare ? options.bare_inlier_share : options.inlier_share;
+  const double corner_share = bare ? options.bare_corner_share : options.corner_share;
+  if (evidence.inliers < std::max<double>(options.fewest_inliers, inlier_share * evidence.visible)) {
     return of(evidence.inliers, evidence.visible, "points in view agree");
   }
   if (evidence.visible_corners >= options.fewest_corners &&
-      evidence.corner_inliers < options.corner_share * evidence.visible_corners) {
+      evidence.corner_inliers < corner_share * evidence.visible_corners) {
     return of(evidence.corner_inliers, evidence.visible_corners, "corners in view agree");
   }
-  // Without corners to tell one place from another that looks alike, nothing may be left over.
-  if (evidence.corner_inliers < options.telling_corners && evidence.explained < options.explained_share) {
+  if (bare && evidence.explained < options.explained_share) {
     return "only " + std::to_string(static_cast<int>(100 * evidence.explained)) +
            " % of the frame's edges are the map's";
   }

@@ -24,11 +24,14 @@ struct GuidedSearchOptions {
   double screening_radius = 20;  // [px]
   int neighbours = 6;            // covisible keyframes whose points are searched for too
   int fewest_inliers = 30;
-  double inlier_share = 0.5;     // of the points that should be visible
-  double corner_share = 0.4;     // likewise of the corners, where there are some ...
-  int fewest_corners = 8;        // ... that is, so many
-  int telling_corners = 25;      // fewer corners in agreement do not tell one place from another: then ...
-  double explained_share = 0.8;  // ... so much of the frame's edges must be the map's
+  double inlier_share = 0.4;   // of the points that should be visible
+  double corner_share = 0.25;  // likewise of the corners, where there are some ...
+  int fewest_corners = 8;      // ... that is, so many
+  // Fewer corners in agreement don't tell one place from another that looks alike; then more is asked:
+  int telling_corners = 25;
+  double bare_inlier_share = 0.75;
+  double bare_corner_share = 0.5;
+  double explained_share = 0.8;  // of the frame's edges that must be the map's
   ExplainedEdgesOptions explained_edges;
   int fewest_cells = 5;           // of a grid of 4 x 4 over the image that inliers lie in
   double position_sigma = 0.02;   // largest standard deviation of the position, share of the points' median distance

@@ -35,16 +35,18 @@ Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double secon
 void Relocalisation::addKeyframe(const Keyframe& keyframe) {
   if (!keyframe.images) return;
   const ImagePyramid& pyramid = keyframe.images->pyramid;
-  std::vector<Eigen::Vector2f> pixels;
-  for (const PointObservation& observation : keyframe.observations) {
-    pixels.push_back(observation.measurement.pixel.cast<float>());
+  std::vector<const PointObservation*> chosen;
+  for (const PointObservation& observation : keyframe.observations) chosen.push_back(&observation);
+  std::stable_partition(chosen.begin(), chosen.end(), [](const PointObservation* o) { return o->corner; });
+  if (static_cast<int>(chosen.size()) > options_.described_points) {
+    chosen.resize(static_cast<std::size_t>(options_.described_points));
   }
+  std::vector<Eigen::Vector2f> pixels;
+  for (const PointObservation* observation : chosen) pixels.push_back(observation->measurement.pixel.cast<float>());
   KnownKeyframe known;
   known.thumbnail = makeThumbnail(pyramid);
   known.described = describeAtTwoSizes(pyramid.levels[0], pixels, 0);
-  for (const int index : known.described.points) {
-    known.points.push_back(keyframe.observations[static_cast<std::size_t>(index)].point);
-  }
+  for (const int index : known.described.points) known.points.push_back(chosen[static_cast<std::size_t>(index)]->point);
   keyframes_[keyframe.id] = std::move(known);
 }
 

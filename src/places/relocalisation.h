@@ -16,7 +16,9 @@ namespace edgeslam {
 struct RelocalisationOptions {
   GuidedSearchOptions guided_search;
   KeyframeMatchingOptions matching;
-  PointChoiceOptions points;      // of the frame, to be matched with the keyframes'
+  // Of the frame, to be matched with the keyframes': descriptors say little of points along an edge.
+  PointChoiceOptions points{/*count=*/300, /*spacing=*/6, /*cell=*/40, /*corner_share=*/0.8};
+  int described_points = 250;     // of a keyframe, corner-like ones first
   int candidates = 5;             // keyframes tried in one frame
   int matched_candidates = 2;     // of these, matched by descriptors too
   int refined_poses = 2;          // most poses of one kind that are followed up from a first look

@@ -42,16 +42,16 @@ struct MapSearchOptions {
 
 // A point that should be in view.
 struct VisiblePoint {
-  std::size_t index = 0;   // into the points
-  Eigen::Vector2f pixel;   // its projection [px]
-  Eigen::Vector2f normal;  // its normal as seen from here: unit, from dark to bright
-  Eigen::Matrix2f warp;    // takes offsets in the frame to offsets in the keyframe's image
+  std::size_t index = 0;                               // into the points
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();     // its projection [px]
+  Eigen::Vector2f normal = Eigen::Vector2f::UnitX();   // its normal as seen from here: unit, from dark to bright
+  Eigen::Matrix2f warp = Eigen::Matrix2f::Identity();  // takes offsets in the frame to offsets in the keyframe's image
 };
 
 struct FoundPoint {
-  std::size_t index = 0;   // into the points
-  Eigen::Vector2f pixel;   // [px]
-  Eigen::Vector2f normal;  // unit, from dark to bright
+  std::size_t index = 0;                              // into the points
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();    // [px]
+  Eigen::Vector2f normal = Eigen::Vector2f::UnitX();  // unit, from dark to bright
   float correlation = 0;
 };
 
