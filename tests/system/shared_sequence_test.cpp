@@ -4,7 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "dataset/evaluation.h"
+#include "dataset/trajectory.h"
 #include "system/program.h"
+#include "system/surfaces.h"
 
 namespace edgeslam {
 namespace {
@@ -18,7 +21,7 @@ void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.seq
 
 class SharedSequence : public ::testing::TestWithParam<Expected> {};
 
-TEST_P(SharedSequence, StaysWithinTheErrorBound) {
+TEST_P(SharedSequence, StaysWithinItsBounds) {
   const std::string input = std::string(EDGESLAM_SOURCE_DIR) + "/../shared/data/" + GetParam().sequence;
   if (!std::filesystem::exists(input)) GTEST_SKIP() << input << " is not there";
   const TemporaryFolder folder;
@@ -28,6 +31,12 @@ TEST_P(SharedSequence, StaysWithinTheErrorBound) {
   EXPECT_LT(summary["absolute_trajectory_error"]["trajectory"]["rmse_m"].get<double>(), GetParam().error_m);
   EXPECT_GE(summary["coverage_from_first_pose"].get<double>(), 0.97);
   EXPECT_LE(summary["first_pose_s"].get<double>(), 3.0);
+  if (!std::filesystem::exists(input + "/surfaces.txt")) return;
+  const AbsoluteError error = absoluteError(readTrajectory(folder.path("result/trajectory.txt")),
+                                            readTrajectory(input + "/groundtruth.txt"), Alignment::similarity);
+  EXPECT_LT(medianDistanceToSurfaces(readMapPoints(folder.path("result/map.ply")), error.reference_T_estimate,
+                                     readSurfaces(input + "/surfaces.txt")),
+            0.03);
 }
 
 INSTANTIATE_TEST_SUITE_P(Data, SharedSequence,
