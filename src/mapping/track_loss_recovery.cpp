@@ -42,6 +42,7 @@ std::vector<Track3> commonTracks(const Keyframe& first, const Keyframe& middle, 
     if (in_middle && in_first) tracks[observation.point] = {in_first, in_middle, &observation};
   }
   std::vector<Track3> common;
+  common.reserve(tracks.size());
   for (const auto& [id, track] : tracks) common.push_back(track);
   return common;
 }
@@ -115,7 +116,7 @@ bool resectionFirst(const Camera& camera, const std::vector<Track3>& tracks, con
   std::vector<Eigen::Vector3d> points, bearings;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!local.inliers[i]) continue;
-    points.push_back(tracks[i].middle->bearing / local.inverse_depths[i]);
+    points.emplace_back(tracks[i].middle->bearing / local.inverse_depths[i]);
     bearings.push_back(tracks[i].first->bearing);
   }
   const ResectioningResult resectioned =

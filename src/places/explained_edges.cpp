@@ -13,11 +13,11 @@ class Cells {
       : side_(static_cast<float>(std::max(1.0, side))),
         columns_(indexOf(static_cast<float>(size.width)) + 1),
         rows_(indexOf(static_cast<float>(size.height)) + 1),
-        cells_(static_cast<std::size_t>(columns_ * rows_)) {
+        cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {
     for (const VisiblePoint& point : visible) {
       const int column = std::clamp(indexOf(point.pixel.x()), 0, columns_ - 1);
       const int row = std::clamp(indexOf(point.pixel.y()), 0, rows_ - 1);
-      cells_[static_cast<std::size_t>(row * columns_ + column)].push_back(&point);
+      cells_[cellOf(row, column)].push_back(&point);
     }
   }
 
@@ -27,7 +27,7 @@ class Cells {
     const int column = indexOf(pixel.x()), row = indexOf(pixel.y());
     for (int y = std::max(0, row - 1); y <= std::min(rows_ - 1, row + 1); ++y) {
       for (int x = std::max(0, column - 1); x <= std::min(columns_ - 1, column + 1); ++x) {
-        for (const VisiblePoint* point : cells_[static_cast<std::size_t>(y * columns_ + x)]) {
+        for (const VisiblePoint* point : cells_[cellOf(y, x)]) {
           if (condition(*point)) return true;
         }
       }
@@ -36,6 +36,9 @@ class Cells {
   }
 
  private:
+  std::size_t cellOf(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+  }
   int indexOf(float coordinate) const { return static_cast<int>(std::floor(coordinate / side_)); }
 
   float side_;

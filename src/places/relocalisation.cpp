@@ -42,7 +42,10 @@ void Relocalisation::addKeyframe(const Keyframe& keyframe) {
     chosen.resize(static_cast<std::size_t>(options_.described_points));
   }
   std::vector<Eigen::Vector2f> pixels;
-  for (const PointObservation* observation : chosen) pixels.push_back(observation->measurement.pixel.cast<float>());
+  pixels.reserve(chosen.size());
+  for (const PointObservation* observation : chosen) {
+    pixels.emplace_back(observation->measurement.pixel.cast<float>());
+  }
   KnownKeyframe known;
   known.thumbnail = makeThumbnail(pyramid);
   known.described = describeAtTwoSizes(pyramid.levels[0], pixels, 0);
