@@ -63,6 +63,9 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"points.sigma_corner", &points.sigma_corner, "px", 0.01, 10, "the same of a corner-like point"},
       {"points.border", &points.border, "px", 0, 200, "points keep this distance from the image's border"},
 
+      {"points.weigh_edges", &points.weigh_edges, "", 0, 0,
+       "false counts a point as well known along its edge as across; to measure the gain"},
+
       heading("pose", "Pose of each frame: robust Gauss-Newton on the edge measurements"),
       {"pose.iterations", &pose.iterations, "", 1, 100, "most Gauss-Newton steps"},
       {"pose.huber", &pose.huber, "sigma", 0.1, 100, "from here on the error of a measurement counts linearly"},
@@ -101,7 +104,7 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
        "from one search to the next; keyframes search besides"},
       {"map_reuse.radius", &reuse.search.radius, "px", 0.5, 50, "searched around the projection"},
       {"map_reuse.least_correlation", &reuse.search.least_correlation, "", -1, 1, "with the keyframe's patch"},
-      {"map_reuse.outlier", &reuse.outlier, "sigma", 0.1, 100, "farther from its projection a point is not believed"},
+      {"map_reuse.outlier_px", &reuse.outlier_px, "px", 0.1, 100, "farther across its edge a point is not believed"},
       {"map_reuse.latest_keyframes", &view.latest_keyframes, "keyframes", 1, 1000, "whose points are looked for"},
       {"map_reuse.near_keyframes", &view.near_keyframes, "keyframes", 0, 1000,
        "older ones at the same place, likewise"},
@@ -174,6 +177,21 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       heading("pipeline", "Schedule"),
       {"pipeline.view_delay_frames", &settings.view_delay_frames, "frames", 1, 100,
        "the map that follows from a keyframe is used so many frames later"},
+
+      heading("recovery", "Track-loss recovery (P21) and relocalisation (P22)"),
+      {"recovery.enabled", &settings.mapping.recovery_enabled, "", 0, 0, "off only to measure what it gains"},
+      {"recovery.fewest_inliers", &settings.mapping.recovery.fewest_inliers, "points", 10, 10000,
+       "that must fit three views ..."},
+      {"recovery.inlier_share", &settings.mapping.recovery.inlier_share, "", 0, 1, "... or this share of the tracks"},
+      {"recovery.relocalisation", &settings.relocalisation_enabled, "", 0, 0, "off only to measure what it gains"},
+      {"recovery.relocalisation_interval", &settings.relocalisation_interval, "frames", 1, 1000,
+       "lost frames from one attempt to the next"},
+
+      heading("loops", "Loop closing (P23 to P27) and adjustment of the whole map (P20)"),
+      {"loops.enabled", &settings.loops.enabled, "", 0, 0, "off only to measure what it gains"},
+      {"loops.global_interval_keyframes", &settings.mapping.global_interval_keyframes, "keyframes", 2, 10000,
+       "from one adjustment of the whole map to the next ..."},
+      {"loops.global_interval_s", &settings.mapping.global_interval_s, "s", 1, 10000, "... at the latest"},
 
       heading("bundle", "Solver of the local bundle adjustment"),
       {"bundle.iterations", &bundle.iterations, "", 1, 1000, "most steps"},

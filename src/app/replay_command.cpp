@@ -157,6 +157,22 @@ void tell(const RunResult& result, const std::optional<Trajectory>& ground_truth
   std::printf("%s/report.html shows it all\n", output.c_str());
 }
 
+// Told before a long run rather than after it.
+void requireWritable(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path existing = fs::absolute(folder, error).lexically_normal();
+  while (!fs::exists(existing, error) && existing.has_parent_path() && existing != existing.parent_path()) {
+    existing = existing.parent_path();
+  }
+  if (!fs::is_directory(existing, error)) {
+    throw InputError(folder + ": cannot be made a folder for the results: " + existing.string() + " is not a folder");
+  }
+  if (access(existing.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(folder + ": results cannot be written there: no permission to write in " + existing.string());
+  }
+}
+
 int runReplay(const ReplayArguments& arguments) {
   const Configuration configuration =
       arguments.configuration.empty() ? Configuration() : readConfiguration(arguments.configuration);
@@ -165,6 +181,7 @@ int runReplay(const ReplayArguments& arguments) {
   std::optional<Trajectory> ground_truth;
   if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
 
+  requireWritable(arguments.output);
   const RunResult result = runAll(*source, camera, configuration.settings, arguments.drawings);
   if (result.unreadable_frames == static_cast<std::int64_t>(result.frames.size())) {
     throw InputError(arguments.input + ": not one frame could be read");

@@ -23,6 +23,8 @@ struct PointChoiceOptions {
   double sigma_edge = 0.3;     // across an edge [px]
   double sigma_corner = 0.17;  // of a corner-like point, across its stronger direction [px]
   double border = 12;          // points keep this distance from the image's border [px]
+  bool weigh_edges =
+      true;  // false: a point counts as if it were known along its edge as well as across; to measure the gain
 };
 
 struct ChosenPoint {

@@ -9,11 +9,11 @@
 namespace edgeslam {
 
 struct LocalAdjustmentOptions {
-  int free_keyframes = 8;            // the new one and its best covisible ones
-  int fixed_keyframes = 20;          // most that only hold the gauge
-  int covisible_points = 100;        // common points that make two keyframes covisible ...
-  double covisible_share = 0.3;      // ... or this share of the new keyframe's, where the scene has less
-  double outlier = 3.0;              // whitened error over which an observation is taken out
+  int free_keyframes = 8;        // the new one and its best covisible ones
+  int fixed_keyframes = 20;      // most that only hold the gauge
+  int covisible_points = 100;    // common points that make two keyframes covisible ...
+  double covisible_share = 0.3;  // ... or this share of the new keyframe's, where the scene has less
+  double outlier = 5.0;          // whitened; larger than noise allows: old points seen again after drift must stay in
   double largest_depth_sigma = 0.5;  // points whose depth is less certain than this share of it are taken out
   BundleOptions bundle{8, 2.0};
 };

@@ -9,6 +9,7 @@ std::optional<MapView> Mapper::add(const TrackedFrame& frame) {
     initialised_ = false;
     map_ = Map();
     last_global_ = 0;
+    last_meeting_ = -1;
     candidates_.clear();
     origin_frame_ = frame.frame_index;
     initialisation_.start(frame);
@@ -76,6 +77,19 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
   return result;
 }
 
+bool Mapper::metOldMap() {
+  const KeyframeId latest = map_.keyframes.back().id;
+  const std::vector<int> shared = sharedPoints(map_, latest);
+  int old_points = 0;
+  for (KeyframeId old = 0; old + options_.old_keyframes < latest; ++old) {
+    old_points = std::max(old_points, shared[static_cast<std::size_t>(old)]);
+  }
+  if (old_points < options_.old_points) return false;
+  const bool already = last_meeting_ >= 0 && latest - last_meeting_ <= options_.old_keyframes / 4;
+  if (!already) last_meeting_ = latest;
+  return !already;
+}
+
 bool Mapper::adjustAll(bool at_once) {
   if (!initialised_) return false;
   const Keyframe& latest = map_.keyframes.back();
@@ -84,7 +98,9 @@ bool Mapper::adjustAll(bool at_once) {
                    static_cast<double>(latest.time_ns - last.time_ns) * 1e-9 >= options_.global_interval_s;
   if (!due && !at_once) return false;
   last_global_ = latest.id;
-  if (!adjustGlobally(camera_, options_.global_adjustment, options_.local_adjustment, map_)) return false;
+  GlobalAdjustmentOptions adjustment = options_.global_adjustment;
+  if (at_once) adjustment.bundle.iterations = options_.iterations_after_loop;
+  if (!adjustGlobally(camera_, adjustment, options_.local_adjustment, map_)) return false;
   ++version_;
   return true;
 }

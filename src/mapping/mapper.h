@@ -19,8 +19,11 @@ struct MapperOptions {
   NewPointOptions new_points;
   LocalAdjustmentOptions local_adjustment;
   GlobalAdjustmentOptions global_adjustment;
-  int global_interval_keyframes = 25;   // P20: from one global adjustment to the next ...
-  double global_interval_s = 25;        // ... at the latest
+  int old_keyframes = 20;          // a part of the map is old so many keyframes after it was left ...
+  int old_points = 20;             // ... and met again with so many of its points
+  int iterations_after_loop = 40;  // of the adjustment of the whole map: a closed loop leaves it far from its minimum
+  int global_interval_keyframes = 25;  // P20: from one global adjustment to the next ...
+  double global_interval_s = 25;       // ... at the latest
   bool recovery_enabled = true;
   RecoveryOptions recovery;
   ViewOptions view;
@@ -39,6 +42,9 @@ class Mapper {
   RecoveryResult recover(const TrackedFrame& lost);
   // P20 where it is due, or at once (after a loop was closed). True where the map changed.
   bool adjustAll(bool at_once);
+  // True where the latest keyframe sees points of a part of the map left long ago, as none of the keyframes before it
+  // did: map reuse closed a loop by itself, and drift is to be shared out.
+  bool metOldMap();
   // For corrections of the map as a whole (loop closing).
   template <typename Correct>
   void correct(const Correct& apply) {
@@ -65,7 +71,8 @@ class Mapper {
   bool initialised_ = false;
   std::uint64_t version_ = 0;
   std::int64_t origin_frame_ = -1;
-  KeyframeId last_global_ = 0;          // latest keyframe at the last global adjustment
+  KeyframeId last_meeting_ = -1;                            // latest keyframe that met an old part of the map
+  KeyframeId last_global_ = 0;                              // latest keyframe at the last global adjustment
   std::vector<std::pair<std::int64_t, Pose>> early_poses_;  // keyframe0_T_camera
 };
 

@@ -95,14 +95,18 @@ void LockstepRun::lookForLoop(FrameRecord& record) {
   if (settings_.loops.enabled) {
     const LoopOutcome outcome = loop_closing_.addKeyframe(map);
     for (const JudgedLoop& loop : outcome.considered) {
-      tell(record, "loop of keyframe " + std::to_string(outcome.current) + " to keyframe " + std::to_string(loop.keyframe) +
-                       (loop.accepted ? " closed: " : " refused: ") + loop.reason);
+      tell(record, "loop of keyframe " + std::to_string(outcome.current) + " to keyframe " +
+                       std::to_string(loop.keyframe) + (loop.accepted ? " closed: " : " refused: ") + loop.reason);
     }
     if (outcome.correction) {
       mapper_.correct([&](Map& corrected) { applyCorrection(*outcome.correction, corrected); });
       ++result_.loops;
       closed = true;
     }
+  }
+  if (mapper_.metOldMap()) {
+    tell(record, "an old part of the map is met again by its points");
+    closed = true;
   }
   mapper_.adjustAll(closed);
 }
@@ -123,11 +127,13 @@ void LockstepRun::findAgain(FrameRecord& record) {
   }
   if (record.state == TrackingState::lost && settings_.relocalisation_enabled &&
       lost_frames_ % std::max(1, settings_.relocalisation_interval) == 0) {
-    const RelocalisationResult found = relocalisation_.relocalise(mapper_.map(), tracker_.lostImages(), tracker_.lostEdges());
+    const RelocalisationResult found =
+        relocalisation_.relocalise(mapper_.map(), tracker_.lostImages(), tracker_.lostEdges());
     if (found.found) {
       ++result_.relocalisations;
-      tell(record, "relocalised at keyframe " + std::to_string(found.keyframe) + ", " + std::to_string(found.evidence.inliers) +
-                       " of " + std::to_string(found.evidence.visible) + " points");
+      tell(record, "relocalised at keyframe " + std::to_string(found.keyframe) + ", " +
+                       std::to_string(found.evidence.inliers) + " of " + std::to_string(found.evidence.visible) +
+                       " points");
       std::vector<FoundAgain> points;
       for (const MatchedPoint& match : found.matches) points.push_back({match.point, match.measurement, match.corner});
       goOnFrom(record, TrackingState::relocalised, found.world_T_camera, found.pose.covariance, found.keyframe, points);
@@ -138,8 +144,8 @@ void LockstepRun::findAgain(FrameRecord& record) {
   record.stage_ms["places"] = millisecondsSince(start);
 }
 
-void LockstepRun::goOnFrom(FrameRecord& record, TrackingState state, const Pose& world_T_camera, const Matrix6d& covariance,
-                           KeyframeId centre, const std::vector<FoundAgain>& points) {
+void LockstepRun::goOnFrom(FrameRecord& record, TrackingState state, const Pose& world_T_camera,
+                           const Matrix6d& covariance, KeyframeId centre, const std::vector<FoundAgain>& points) {
   views_.clear();
   tracker_.resume(mapper_.view(centre), world_T_camera, covariance, points);
   record.state = state;

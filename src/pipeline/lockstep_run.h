@@ -47,8 +47,8 @@ class LockstepRun {
   Mapper mapper_;
   Relocalisation relocalisation_;
   LoopClosing loop_closing_;
-  KeyframeId keyframes_known_ = 0;   // to places
-  int lost_frames_ = 0;              // in a row
+  KeyframeId keyframes_known_ = 0;  // to places
+  int lost_frames_ = 0;             // in a row
   RunResult result_;
   std::deque<DueView> views_;
   std::int64_t processed_ = 0;

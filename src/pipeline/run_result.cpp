@@ -4,12 +4,18 @@ namespace edgeslam {
 
 const char* stateName(TrackingState state) {
   switch (state) {
-    case TrackingState::initialising: return "initialising";
-    case TrackingState::tracking: return "tracking";
-    case TrackingState::predicted: return "predicted";
-    case TrackingState::recovered: return "recovered";
-    case TrackingState::relocalised: return "relocalised";
-    case TrackingState::lost: return "lost";
+    case TrackingState::initialising:
+      return "initialising";
+    case TrackingState::tracking:
+      return "tracking";
+    case TrackingState::predicted:
+      return "predicted";
+    case TrackingState::recovered:
+      return "recovered";
+    case TrackingState::relocalised:
+      return "relocalised";
+    case TrackingState::lost:
+      return "lost";
   }
   return "unknown";
 }

@@ -1,4 +1,5 @@
-// What a run leaves: a record a frame, the keyframes, the map, and what is needed to explain them in files and in the report.
+// What a run leaves: a record a frame, the keyframes, the map, and what is needed to explain them in files and in the
+// report.
 #pragma once
 
 #include <cstdint>
@@ -30,19 +31,20 @@ inline bool isGoodPose(TrackingState state) {
 }
 
 struct FrameRecord {
-  std::int64_t index = 0;    // in the source
+  std::int64_t index = 0;  // in the source
   std::int64_t time_ns = 0;
   TrackingState state = TrackingState::initialising;  // as given out at the time
-  std::string reason;        // why it is not `tracking`, or empty
+  std::string reason;                                 // why it is not `tracking`, or empty
   bool has_live_pose = false;
-  Pose live_world_T_camera;  // as given out at the time
+  Pose live_world_T_camera;                // as given out at the time
   Matrix6d covariance = Matrix6d::Zero();  // of the live pose: right-hand update [translation; rotation]
   bool has_final_pose = false;             // good, and carried by its keyframe's final pose
   Pose final_world_T_camera;
-  int tracked_points = 0;    // points followed in the image
-  int mapped_points = 0;     // of these with depth and used for the pose
+  int tracked_points = 0;  // points followed in the image
+  int mapped_points = 0;   // of these with depth and used for the pose
   bool is_keyframe = false;
-  std::map<std::string, double> stage_ms;  // time of each stage in this frame [ms]: "pyramid", "edges", "flow", "pose", ...
+  std::map<std::string, double>
+      stage_ms;  // time of each stage in this frame [ms]: "pyramid", "edges", "flow", "pose", ...
 };
 
 struct KeyframeRecord {
@@ -55,12 +57,12 @@ struct KeyframeRecord {
 };
 
 struct MapPointRecord {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world, map units
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();        // world, map units
   Eigen::Vector3d edge_direction = Eigen::Vector3d::Zero();  // world, unit; zero for a corner-like point
-  int chain = -1;                  // points of one image edge share a number; unique over the map
-  int order = 0;                   // place along the chain
-  float depth_sigma_ratio = 0;     // standard deviation of the depth over the depth
-  unsigned char grey = 0;          // of the image there
+  int chain = -1;               // points of one image edge share a number; unique over the map
+  int order = 0;                // place along the chain
+  float depth_sigma_ratio = 0;  // standard deviation of the depth over the depth
+  unsigned char grey = 0;       // of the image there
 };
 
 // A frame with its edges and tracks, for the report.
@@ -79,9 +81,9 @@ struct RunResult {
   int recoveries = 0;               // P21
   int relocalisations = 0;          // P22
   int loops = 0;                    // closed
-  std::string initialisation;    // how the map was started: method, pair, quality factor
+  std::string initialisation;       // how the map was started: method, pair, quality factor
   std::int64_t unreadable_frames = 0;
-  double wall_s = 0;             // of the whole run
+  double wall_s = 0;  // of the whole run
 };
 
 }  // namespace edgeslam

@@ -16,7 +16,8 @@ struct Settings {
   RelocalisationOptions relocalisation;
   int relocalisation_interval = 2;  // lost frames from one attempt to the next
   LoopClosingOptions loops;
-  // Lockstep: the map view that follows from the keyframe of frame k is taken at frame k + view_delay_frames (design, section 4).
+  // Lockstep: the map view that follows from the keyframe of frame k is taken at frame k + view_delay_frames (design,
+  // section 4).
   int view_delay_frames = 2;
 };
 

@@ -1,6 +1,7 @@
 #include "tracking/map_reuse.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace edgeslam {
 namespace {
@@ -45,7 +46,7 @@ void reuseMapPoints(const Camera& camera, const MapView& view, const std::shared
     const SearchPoint& point = points[found.index];
     const Measurement measurement = measurementOf(point, found);
     const Eigen::Vector2d error = project(camera, camera_T_world * point.position) - measurement.pixel;
-    if ((whitening(measurement) * error).norm() > options.outlier) continue;
+    if (std::abs(measurement.normal.dot(error)) > options.outlier_px) continue;
     if (nearTrack(tracks, found.pixel, static_cast<float>(options.spacing))) continue;
     const ViewPoint& view_point = *findPoint(view, point.id);
     Track track;

@@ -12,9 +12,9 @@ namespace edgeslam {
 
 struct MapReuseOptions {
   bool enabled = true;
-  int interval = 5;      // frames from one search to the next; every keyframe searches besides
-  double outlier = 3.0;  // whitened distance from its projection over which a found point is not believed
-  double spacing = 3;    // least distance from the tracks there are [px]
+  int interval = 5;         // frames from one search to the next; every keyframe searches besides
+  double outlier_px = 1.5;  // across its edge from where it should be: farther away a found point is not believed [px]
+  double spacing = 3;       // least distance from the tracks there are [px]
   MapSearchOptions search;
 };
 

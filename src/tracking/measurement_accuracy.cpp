@@ -13,6 +13,7 @@ void updateAccuracy(const cv::Mat& grey, const PointChoiceOptions& options, Trac
   track.sigma_normal = static_cast<float>(track.corner ? options.sigma_corner : options.sigma_edge);
   const float along = std::max(1e-6f, tensor.l2 - static_cast<float>(options.noise));
   track.sigma_tangent = std::min(1000.0f, track.sigma_normal * std::sqrt(tensor.l1 / along));
+  if (!options.weigh_edges) track.sigma_tangent = track.sigma_normal;
 }
 
 }  // namespace edgeslam

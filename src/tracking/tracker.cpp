@@ -128,9 +128,9 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
   estimate = estimatePose(camera_, view_, frame.tracks, estimate.result.world_T_camera, options_.pose);
   const auto in_view = static_cast<double>(estimate.track_of_observation.size());
   // A flat map fits a scene with depth only here and there: before the map stands no share of inliers is asked for.
-  const double fewest_inliers = !view_.initialised      ? 0.0
-                                : lost_since_ns_ >= 0   ? options_.regain_inlier_share * in_view
-                                                        : options_.least_inlier_share * in_view;
+  const double fewest_inliers = !view_.initialised    ? 0.0
+                                : lost_since_ns_ >= 0 ? options_.regain_inlier_share * in_view
+                                                      : options_.least_inlier_share * in_view;
   if (!estimate.result.converged || estimate.result.inlier_count < fewest_inliers) return false;
   frame.pose = estimate.result;
   frame.world_T_camera = estimate.result.world_T_camera;
@@ -215,7 +215,7 @@ void Tracker::choosePointsIn(TrackedState& frame, KeyframeId keyframe) {
     track.normal = chosen.normal;
     track.corner = chosen.corner;
     track.sigma_normal = chosen.sigma_normal;
-    track.sigma_tangent = chosen.sigma_tangent;
+    track.sigma_tangent = options_.points.weigh_edges ? chosen.sigma_tangent : chosen.sigma_normal;
     track.chain = chosen.chain;
     track.order = nearestEdgePoint(frame.edges, chosen.pixel, chosen.normal, 1.0f, -1.0f);
     track.keyframe = keyframe;
