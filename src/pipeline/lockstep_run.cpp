@@ -50,6 +50,10 @@ const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns
   hand(std::move(outcome.for_mapping), frame);
   lost_frames_ = frame.state == TrackingState::lost ? lost_frames_ + 1 : 0;
   if (lost_frames_ > 0) findAgain(frame);
+  if (isGoodPose(frame.state)) {
+    last_good_pose_ = frame.live_world_T_camera;
+    last_good_ns_ = time_ns;
+  }
   if (drawing_interval_ > 0 && processed_ % drawing_interval_ == 0) draw(grey, frame);
   ++processed_;
   return frame;
@@ -127,8 +131,11 @@ void LockstepRun::findAgain(FrameRecord& record) {
   }
   if (record.state == TrackingState::lost && settings_.relocalisation_enabled &&
       lost_frames_ % std::max(1, settings_.relocalisation_interval) == 0) {
+    // What looks like a place out of reach is another place that looks the same.
+    const double seconds = static_cast<double>(record.time_ns - last_good_ns_) * 1e-9;
+    const Reachable reachable = reachableFrom(mapper_.map(), last_good_pose_, seconds);
     const RelocalisationResult found =
-        relocalisation_.relocalise(mapper_.map(), tracker_.lostImages(), tracker_.lostEdges());
+        relocalisation_.relocalise(mapper_.map(), tracker_.lostImages(), tracker_.lostEdges(), reachable);
     if (found.found) {
       ++result_.relocalisations;
       tell(record, "relocalised at keyframe " + std::to_string(found.keyframe) + ", " +

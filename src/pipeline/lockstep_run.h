@@ -49,6 +49,8 @@ class LockstepRun {
   LoopClosing loop_closing_;
   KeyframeId keyframes_known_ = 0;  // to places
   int lost_frames_ = 0;             // in a row
+  Pose last_good_pose_;
+  std::int64_t last_good_ns_ = 0;
   RunResult result_;
   std::deque<DueView> views_;
   std::int64_t processed_ = 0;
