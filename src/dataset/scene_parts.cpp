@@ -45,10 +45,10 @@ std::vector<SceneWall> addRoomShell(Scene& scene, const Vector3d& minimum, const
   const Vector3d x = size.x() * Vector3d::UnitX(), y = size.y() * Vector3d::UnitY(), z = size.z() * Vector3d::UnitZ();
   addFace(scene, minimum, x, y, floor_albedo);
   addFace(scene, minimum + z, y, x, ceiling_albedo);
-  const std::vector<SceneWall> walls = {{minimum + x, -Vector3d::UnitX(), size.x()},
-                                        {minimum + x + y, -Vector3d::UnitY(), size.y()},
-                                        {minimum + y, Vector3d::UnitX(), size.x()},
-                                        {minimum, Vector3d::UnitY(), size.y()}};
+  std::vector<SceneWall> walls = {{minimum + x, -Vector3d::UnitX(), size.x()},
+                                  {minimum + x + y, -Vector3d::UnitY(), size.y()},
+                                  {minimum + y, Vector3d::UnitX(), size.x()},
+                                  {minimum, Vector3d::UnitY(), size.y()}};
   for (const SceneWall& wall : walls) addFace(scene, wall.origin, wall.length * wall.right, z, wall_albedo);
   return walls;
 }

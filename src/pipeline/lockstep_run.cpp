@@ -45,9 +45,9 @@ LockstepRun::LockstepRun(const Camera& camera, const Settings& settings, std::in
 
 const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
   takeDueViews();
-  TrackingOutcome outcome = tracker_.track(index, time_ns, grey);
+  const TrackingOutcome outcome = tracker_.track(index, time_ns, grey);
   FrameRecord& frame = record(index, time_ns, outcome);
-  hand(std::move(outcome.for_mapping), frame);
+  hand(outcome.for_mapping, frame);
   lost_frames_ = frame.state == TrackingState::lost ? lost_frames_ + 1 : 0;
   if (lost_frames_ > 0) findAgain(frame);
   if (isGoodPose(frame.state)) {
@@ -73,7 +73,7 @@ void LockstepRun::takeDueViews() {
   }
 }
 
-void LockstepRun::hand(std::vector<TrackedFrame> frames, FrameRecord& record) {
+void LockstepRun::hand(const std::vector<TrackedFrame>& frames, FrameRecord& record) {
   const auto start = std::chrono::steady_clock::now();
   for (const TrackedFrame& frame : frames) {
     std::optional<MapView> view = mapper_.add(frame);

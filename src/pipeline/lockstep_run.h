@@ -33,7 +33,7 @@ class LockstepRun {
   };
 
   void takeDueViews();
-  void hand(std::vector<TrackedFrame> frames, FrameRecord& record);
+  void hand(const std::vector<TrackedFrame>& frames, FrameRecord& record);
   void lookForLoop(FrameRecord& record);
   void findAgain(FrameRecord& record);
   void goOnFrom(FrameRecord& record, TrackingState state, const Pose& world_T_camera, const Matrix6d& covariance,
