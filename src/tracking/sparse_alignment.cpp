@@ -19,7 +19,8 @@ struct Patch {
 };
 
 bool sample(const cv::Mat& image, double x, double y, int width, float* out) {
-  const double left = x - width / 2, top = y - width / 2;
+  const int radius = width / 2;
+  const double left = x - radius, top = y - radius;
   if (!(left >= -16 && top >= -16 && left + width < image.cols + 15 && top + width < image.rows + 15)) return false;
   const double left_floor = std::floor(left), top_floor = std::floor(top);
   const auto a = static_cast<float>(left - left_floor), b = static_cast<float>(top - top_floor);
@@ -54,8 +55,10 @@ std::vector<Patch> makePatches(const Camera& camera, const cv::Mat& image, int l
     patch.position = point.position;
     for (int v = 0; v < side; ++v) {
       for (int u = 0; u < side; ++u) {
-        const auto centre = static_cast<std::size_t>((v + 1) * outer + u + 1);
-        const auto index = static_cast<std::size_t>(v * side + u);
+        const int inner = (v + 1) * outer + u + 1;
+        const auto centre = static_cast<std::size_t>(inner);
+        const int within = v * side + u;
+        const auto index = static_cast<std::size_t>(within);
         patch.grey[index] = samples[centre];
         patch.gradient_x[index] = 0.5f * (samples[centre + 1] - samples[centre - 1]);
         patch.gradient_y[index] = 0.5f * (samples[centre + outer] - samples[centre - outer]);
