@@ -1,0 +1,71 @@
+#include "mapping/view_of_map.h"
+
+#include <gtest/gtest.h>
+
+namespace edgeslam {
+namespace {
+
+// `count` keyframes in a row along x, one map unit apart, looking along z; each hosts one point 5 units ahead that the
+// next keyframe sees too.
+Map rowOfKeyframes(int count) {
+  Map map;
+  for (KeyframeId id = 0; id < count; ++id) {
+    Keyframe keyframe;
+    keyframe.id = id;
+    keyframe.world_T_camera.translation.x() = id;
+    keyframe.images = std::make_shared<FrameImages>();
+    if (id > 0) {
+      PointObservation seen;
+      seen.point = id - 1;
+      keyframe.observations.push_back(seen);
+    }
+    PointObservation hosted;
+    hosted.point = id;
+    keyframe.observations.push_back(hosted);
+    map.keyframes.push_back(keyframe);
+    MapPoint point;
+    point.id = id;
+    point.host = id;
+    point.host_bearing = Eigen::Vector3d::UnitZ();
+    point.inverse_depth = 0.2;
+    if (id + 1 < count) point.seen_in = {id + 1};
+    map.points[id] = point;
+  }
+  return map;
+}
+
+bool has(const MapView& view, PointId id) { return findPoint(view, id) != nullptr; }
+
+TEST(ViewOfMap, ShowsAllPosesAndThePointsOfTheLatestKeyframes) {
+  const Map map = rowOfKeyframes(40);
+  const MapView view = viewOfMap(map, 39, ViewOptions());
+  ASSERT_EQ(view.keyframe_poses.size(), 40u);
+  EXPECT_EQ(view.keyframe_poses[17].translation.x(), 17);
+  EXPECT_TRUE(has(view, 39));
+  EXPECT_TRUE(has(view, 32));
+  EXPECT_FALSE(has(view, 5)) << "far behind";
+  for (const ViewPoint& point : view.points) {
+    ASSERT_GE(point.source, 0);
+    EXPECT_TRUE(view.keyframe_images[static_cast<std::size_t>(point.source)]);
+  }
+}
+
+TEST(ViewOfMap, OldKeyframesAtTheSamePlaceAreInItToo) {
+  Map map = rowOfKeyframes(40);
+  map.keyframes.back().world_T_camera = map.keyframes[3].world_T_camera;  // back at an old place
+  const MapView view = viewOfMap(map, 39, ViewOptions());
+  EXPECT_TRUE(has(view, 3));
+  EXPECT_FALSE(has(view, 20));
+  map.keyframes.back().world_T_camera.rotation = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitY());  // looking elsewhere
+  EXPECT_FALSE(has(viewOfMap(map, 39, ViewOptions()), 3));
+}
+
+TEST(ViewOfMap, TheCentreCanBeAnOldKeyframe) {
+  const Map map = rowOfKeyframes(40);
+  const MapView view = viewOfMap(map, 6, ViewOptions());
+  EXPECT_TRUE(has(view, 6));
+  EXPECT_FALSE(has(view, 38));
+}
+
+}  // namespace
+}  // namespace edgeslam

@@ -1,0 +1,68 @@
+// Track loss and what follows, through tracking, mapping and places together, on simulated recordings.
+#include <gtest/gtest.h>
+
+#include "dataset/evaluation.h"
+#include "dataset/simulator.h"
+#include "pipeline/lockstep_run.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr int covered_from = 90, covered_for = 24, frame_count = 170;
+
+struct CoveredRun {
+  RunResult result;
+  Trajectory estimate, truth;
+};
+
+CoveredRun runWithCoveredLens() {
+  SimulationOptions options;
+  options.scene = SceneKind::panels_textured;
+  options.frames = frame_count;
+  options.width = 320;
+  options.height = 240;
+  options.covered = {{covered_from, covered_for}};
+  const SimulatedSequence sequence = makeSequence(options);
+  LockstepRun lockstep(sequence.camera, Settings(), frame_count, 0);
+  CoveredRun run;
+  for (int i = 0; i < frame_count; ++i) {
+    const SimulatedFrame frame = sequence.frame(i);
+    lockstep.process(i, frame.time_ns, frame.grey);
+    run.truth.push_back({frame.time_ns, frame.world_T_camera});
+  }
+  run.result = lockstep.finish();
+  for (const FrameRecord& frame : run.result.frames) {
+    if (frame.has_final_pose) run.estimate.push_back({frame.time_ns, frame.final_world_T_camera});
+  }
+  return run;
+}
+
+TEST(FoundAgain, AfterACoveredLensPosesGoOnInTheSameWorld) {
+  const CoveredRun run = runWithCoveredLens();
+  int covered_good = 0, after_good = 0;
+  for (const FrameRecord& frame : run.result.frames) {
+    if (frame.index >= covered_from + 1 && frame.index < covered_from + covered_for)
+      covered_good += isGoodPose(frame.state);
+    if (frame.index >= covered_from + covered_for + 10) after_good += isGoodPose(frame.state);
+  }
+  EXPECT_EQ(covered_good, 0) << "a covered lens sees nothing";
+  const int after = frame_count - covered_from - covered_for - 10;
+  EXPECT_GE(after_good, after * 9 / 10);
+  const AbsoluteError error = absoluteError(run.estimate, run.truth, Alignment::similarity);
+  EXPECT_LT(error.translation.max, 0.05) << "one world before and after [m]";
+}
+
+TEST(FoundAgain, EveryPoseCalledGoodHasItsCovariance) {
+  const CoveredRun run = runWithCoveredLens();
+  int good = 0;
+  for (const FrameRecord& frame : run.result.frames) {
+    if (!isGoodPose(frame.state)) continue;
+    ++good;
+    EXPECT_TRUE(frame.has_live_pose);
+    for (int i = 0; i < 6; ++i) EXPECT_GT(frame.covariance(i, i), 0) << frame.index;
+  }
+  EXPECT_GT(good, 0);
+}
+
+}  // namespace
+}  // namespace edgeslam
