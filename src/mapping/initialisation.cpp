@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "adjustment/pose_adjustment.h"
 #include "geometry/epipolar.h"
