@@ -227,22 +227,28 @@ Map Initialisation::map() const {
   return map;
 }
 
+std::optional<Pose> Initialisation::locate(const TrackedFrame& frame, const Pose& near) const {
+  std::vector<PoseObservation> observations;
+  forEachCommon(first_, frame, [&](std::size_t i, std::size_t j) {
+    if (accepted_.inverse_depths[i] <= 0) return;
+    PoseObservation observation;
+    observation.point = first_.observations[i].bearing / accepted_.inverse_depths[i];
+    observation.measurement = frame.observations[j].measurement;
+    observations.push_back(observation);
+  });
+  const PoseResult result = adjustPose(camera_, near, observations, PoseOptions());
+  if (!result.converged) return std::nullopt;
+  return result.world_T_camera;
+}
+
 std::vector<std::pair<std::int64_t, Pose>> Initialisation::earlyPoses() const {
   std::vector<std::pair<std::int64_t, Pose>> poses{{first_.frame_index, Pose()}};
   // Backwards from the last frame, whose pose is known: each starts from its successor.
   Pose pose = accepted_.first_T_camera.empty() ? Pose() : accepted_.first_T_camera.back();
   for (std::size_t frame = frames_.size(); frame-- > 0;) {
-    std::vector<PoseObservation> observations;
-    forEachCommon(first_, frames_[frame], [&](std::size_t i, std::size_t j) {
-      if (accepted_.inverse_depths[i] <= 0) return;
-      PoseObservation observation;
-      observation.point = first_.observations[i].bearing / accepted_.inverse_depths[i];
-      observation.measurement = frames_[frame].observations[j].measurement;
-      observations.push_back(observation);
-    });
-    const PoseResult result = adjustPose(camera_, pose, observations, PoseOptions());
-    if (!result.converged) break;
-    pose = result.world_T_camera;
+    const std::optional<Pose> located = locate(frames_[frame], pose);
+    if (!located) break;
+    pose = *located;
     poses.emplace_back(frames_[frame].frame_index, pose);
   }
   std::sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

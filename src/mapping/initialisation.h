@@ -4,6 +4,7 @@
 // parallax, the points and the quality factor asked for; cost alone never decides.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,8 @@ class Initialisation {
   bool changed() const { return changed_; }
   void writeProvisional(MapView& view) const;
   Map map() const;
+  // keyframe0_T_camera of a frame that saw the first frame's points, once the map stands; from a pose near it.
+  std::optional<Pose> locate(const TrackedFrame& frame, const Pose& near) const;
   // Final poses of all frames before the map stood (frame index, keyframe0_T_camera).
   std::vector<std::pair<std::int64_t, Pose>> earlyPoses() const;
 

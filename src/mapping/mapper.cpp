@@ -16,7 +16,11 @@ std::optional<MapView> Mapper::add(const TrackedFrame& frame) {
     return std::nullopt;
   }
   if (initialised_) {
-    if (frame.keyframe < 0) return std::nullopt;  // was on its way when the map came to stand
+    if (frame.keyframe < 0) {  // was on its way when the map came to stand
+      const std::optional<Pose> pose = initialisation_.locate(frame, early_poses_.back().second);
+      if (pose) early_poses_.emplace_back(frame.frame_index, *pose);
+      return std::nullopt;
+    }
     addKeyframe(frame);
     return view();
   }
