@@ -14,7 +14,7 @@ struct NewPointOptions {
   double largest_depth_sigma = 0.15;  // standard deviation of the inverse depth, as a share of it
   double least_parallax_deg = 0.3;    // largest angle between two rays to the point [deg]
   double largest_error = 3.0;         // whitened reprojection error over all views
-  double three_view_error = 9.0;      // whitened, P7
+  double three_view_error = 4.0;      // whitened, P7
   int fewest_views = 2;               // keyframes that see the point, its host included
 };
 
