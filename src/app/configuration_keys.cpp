@@ -40,7 +40,7 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"edges.gradient_threshold", &edges.gradient_threshold, "grey/px", 0, 100, "least gradient across an edge"},
       {"edges.shortest_chain", &edges.shortest_chain, "points", 1, 1000, "shorter chains are no edges"},
 
-      heading("blur_gate", "Blurred frames: told by the variance of the grey values at the edge points"),
+      heading("blur_gate", "Blurred frames: told by the sum of the gradients at the edge points"),
       {"blur_gate.share_of_average", &blur_gate.share_of_average, "", 0, 1,
        "less of the average sharpness is blurred; 0 lets all pass"},
       {"blur_gate.forgetting", &blur_gate.forgetting, "", 0, 0.9999, "weight of the past in the average, a frame"},
