@@ -13,7 +13,7 @@
 
 namespace edgeslam {
 
-using KeyframeId = int;        // counted from 0, also the index in Map::keyframes
+using KeyframeId = int;        // counted from 0; culled ones leave gaps
 using PointId = std::int64_t;  // of a track, and of the map point that it becomes
 
 // The images of a frame; shared, never changed once made.

@@ -11,8 +11,8 @@ const PointObservation* findObservation(const Keyframe& keyframe, PointId point)
 }
 
 std::vector<int> sharedPoints(const Map& map, KeyframeId keyframe) {
-  std::vector<int> shared(map.keyframes.size(), 0);
-  for (const PointObservation& observation : map.keyframes[static_cast<std::size_t>(keyframe)].observations) {
+  std::vector<int> shared(numberOfKeyframes(map), 0);
+  for (const PointObservation& observation : map.keyframes[keyframe].observations) {
     const auto point = map.points.find(observation.point);
     if (point == map.points.end()) continue;
     ++shared[static_cast<std::size_t>(point->second.host)];

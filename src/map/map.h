@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "map/keyframe.h"
+#include "map/keyframe_table.h"
 
 namespace edgeslam {
 
@@ -16,24 +16,29 @@ struct MapPoint {
   double inverse_depth = 0;        // 1 / distance along the bearing [1 / map unit]
   double inverse_depth_sigma = 0;  // standard deviation
   bool corner = false;
-  int chain = -1;  // of the host keyframe's edges
+  KeyframeId chain_keyframe = 0;  // whose edges `chain` counts along: the first host
+  int chain = -1;
   int order = 0;
   std::vector<KeyframeId> seen_in;  // keyframes other than the host, ascending
 };
 
 struct Map {
-  std::vector<Keyframe> keyframes;     // index is the id
+  KeyframeTable<Keyframe> keyframes;
   std::map<PointId, MapPoint> points;  // ordered, so that every sum over them is the same in every run
 };
 
 // Position in the world frame.
 inline Eigen::Vector3d worldPosition(const Map& map, const MapPoint& point) {
-  return map.keyframes[static_cast<std::size_t>(point.host)].world_T_camera *
-         (point.host_bearing / point.inverse_depth);
+  return map.keyframes[point.host].world_T_camera * (point.host_bearing / point.inverse_depth);
 }
 
 // The observation of a point in a keyframe, or null.
 const PointObservation* findObservation(const Keyframe& keyframe, PointId point);
+
+// One over the latest keyframe's number: the size of what is kept by keyframe number.
+inline std::size_t numberOfKeyframes(const Map& map) {
+  return map.keyframes.empty() ? 0 : static_cast<std::size_t>(map.keyframes.back().id) + 1;
+}
 
 // P18: number of map points that each keyframe shares with `keyframe`, by keyframe number (0 for itself).
 std::vector<int> sharedPoints(const Map& map, KeyframeId keyframe);

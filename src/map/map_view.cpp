@@ -6,7 +6,7 @@ MapView flatView(const TrackedFrame& first) {
   MapView view;
   view.origin_frame = first.frame_index;
   view.waiting_for = "motion of the camera";
-  view.keyframe_poses.emplace_back();
+  view.keyframes.push_back(ViewKeyframe());
   for (const PointObservation& observation : first.observations) {
     ViewPoint point;
     point.id = observation.point;

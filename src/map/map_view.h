@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "map/keyframe.h"
+#include "map/keyframe_table.h"
 
 namespace edgeslam {
 
@@ -22,14 +22,19 @@ struct ViewPoint {
   bool corner = false;
 };
 
+struct ViewKeyframe {
+  KeyframeId id = 0;
+  Pose world_T_camera;
+  std::shared_ptr<const FrameImages> images;  // null where no point needs it
+};
+
 struct MapView {
   std::uint64_t version = 0;
   std::int64_t origin_frame = -1;  // frame of keyframe 0: a view of an attempt that was given up is told by it
   bool initialised = false;        // false: a provisional, flat-depth map from the first frame; poses are not given out
   std::string waiting_for;         // why not, in words that a user understands
-  std::vector<Pose> keyframe_poses;                                 // world_T_camera, index is the keyframe
-  std::vector<std::shared_ptr<const FrameImages>> keyframe_images;  // likewise; null where no point needs it
-  std::vector<ViewPoint> points;                                    // sorted by id
+  KeyframeTable<ViewKeyframe> keyframes;
+  std::vector<ViewPoint> points;  // sorted by id
 };
 
 inline const ViewPoint* findPoint(const MapView& view, PointId id) {
@@ -39,7 +44,7 @@ inline const ViewPoint* findPoint(const MapView& view, PointId id) {
 }
 
 inline Eigen::Vector3d worldPosition(const MapView& view, const ViewPoint& point) {
-  return view.keyframe_poses[static_cast<std::size_t>(point.host)] * (point.host_bearing / point.inverse_depth);
+  return view.keyframes[point.host].world_T_camera * (point.host_bearing / point.inverse_depth);
 }
 
 // Standard deviation of the inverse depths of a flat start, whose mean is 1: small, since it is their common depth that

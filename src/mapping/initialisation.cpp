@@ -219,8 +219,8 @@ Map Initialisation::map() const {
     point.corner = first.corner;
     point.chain = first.chain;
     point.order = first.order;
-    for (std::size_t k = 1; k < map.keyframes.size(); ++k) {
-      if (findObservation(map.keyframes[k], point.id)) point.seen_in.push_back(static_cast<KeyframeId>(k));
+    for (const Keyframe& keyframe : map.keyframes) {
+      if (keyframe.id > 0 && findObservation(keyframe, point.id)) point.seen_in.push_back(keyframe.id);
     }
     if (!point.seen_in.empty()) map.points.emplace(point.id, point);
   }

@@ -74,7 +74,7 @@ int farthestFromFirst(const std::vector<BundleCamera>& cameras) {
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map) {
   const std::vector<KeyframeId> free = covisibleKeyframes(map, options);
   // Keyframes that share most points with the free ones hold the gauge.
-  std::vector<int> shared(map.keyframes.size(), 0);
+  std::vector<int> shared(numberOfKeyframes(map), 0);
   for (const KeyframeId keyframe : free) {
     const std::vector<int> counts = sharedPoints(map, keyframe);
     for (std::size_t k = 0; k < counts.size(); ++k) shared[k] += counts[k];
@@ -95,11 +95,11 @@ bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, 
 bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options, const std::vector<KeyframeId>& free,
                      const std::vector<KeyframeId>& fixed, Map& map) {
   BundleProblem problem;
-  std::vector<int> camera_of(map.keyframes.size(), -1);  // index in the problem, by keyframe
+  std::vector<int> camera_of(numberOfKeyframes(map), -1);  // index in the problem, by keyframe
   std::vector<KeyframeId> keyframe_of;
   const auto addCamera = [&](KeyframeId keyframe, bool is_fixed) {
     camera_of[static_cast<std::size_t>(keyframe)] = static_cast<int>(problem.cameras.size());
-    problem.cameras.push_back({map.keyframes[static_cast<std::size_t>(keyframe)].world_T_camera, is_fixed});
+    problem.cameras.push_back({map.keyframes[keyframe].world_T_camera, is_fixed});
     keyframe_of.push_back(keyframe);
   };
   std::vector<KeyframeId> ordered_free = free;
@@ -128,7 +128,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
     used_points.push_back(id);
     for (const KeyframeId keyframe : point.seen_in) {
       if (camera_of[static_cast<std::size_t>(keyframe)] < 0) continue;
-      const PointObservation* observation = findObservation(map.keyframes[static_cast<std::size_t>(keyframe)], id);
+      const PointObservation* observation = findObservation(map.keyframes[keyframe], id);
       problem.observations.push_back({camera_of[static_cast<std::size_t>(keyframe)], index, observation->measurement});
       observed.emplace_back(id, keyframe);
     }
@@ -137,8 +137,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   if (!result.usable) return false;
 
   for (std::size_t k = 0; k < problem.cameras.size(); ++k) {
-    if (!problem.cameras[k].fixed)
-      map.keyframes[static_cast<std::size_t>(keyframe_of[k])].world_T_camera = problem.cameras[k].world_T_camera;
+    if (!problem.cameras[k].fixed) map.keyframes[keyframe_of[k]].world_T_camera = problem.cameras[k].world_T_camera;
   }
   for (std::size_t i = 0; i < used_points.size(); ++i) {
     MapPoint& point = map.points.at(used_points[i]);

@@ -38,7 +38,7 @@ std::optional<MapView> Mapper::add(const TrackedFrame& frame) {
 
 void Mapper::addKeyframe(const TrackedFrame& frame) {
   Keyframe keyframe;
-  keyframe.id = static_cast<KeyframeId>(map_.keyframes.size());
+  keyframe.id = std::max(frame.keyframe, map_.keyframes.back().id + 1);
   keyframe.frame_index = frame.frame_index;
   keyframe.time_ns = frame.time_ns;
   keyframe.world_T_camera = frame.world_T_camera;
@@ -59,7 +59,7 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
     return result;
   }
   const Keyframe& last = map_.keyframes.back();
-  result = recoverTrackLoss(camera_, map_.keyframes[map_.keyframes.size() - 2], last, lost, options_.recovery);
+  result = recoverTrackLoss(camera_, map_.keyframes.atPlace(map_.keyframes.size() - 2), last, lost, options_.recovery);
   if (!result.found) return result;
   for (const RecoveredPoint& recovered : result.points) {
     MapPoint point;
@@ -69,6 +69,7 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
     point.inverse_depth = recovered.inverse_depth;
     point.inverse_depth_sigma = recovered.inverse_depth_sigma;
     point.corner = recovered.corner;
+    point.chain_keyframe = last.id;
     point.chain = recovered.chain;
     point.order = recovered.order;
     map_.points.emplace(point.id, std::move(point));  // what is mapped already keeps its place
@@ -97,7 +98,7 @@ bool Mapper::metOldMap() {
 bool Mapper::adjustAll(bool at_once) {
   if (!initialised_) return false;
   const Keyframe& latest = map_.keyframes.back();
-  const Keyframe& last = map_.keyframes[static_cast<std::size_t>(last_global_)];
+  const Keyframe& last = map_.keyframes[last_global_];
   const bool due = latest.id - last.id >= options_.global_interval_keyframes ||
                    static_cast<double>(latest.time_ns - last.time_ns) * 1e-9 >= options_.global_interval_s;
   if (!due && !at_once) return false;

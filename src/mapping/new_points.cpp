@@ -8,7 +8,7 @@
 namespace edgeslam {
 namespace {
 
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[static_cast<std::size_t>(id)]; }
+const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
 // P7, for points that are known in both directions; where a point may slide along its edge the epipolar lines of the
 // outer views need not cross at the same point of the edge, and the triangulation's own error is the check.
@@ -76,6 +76,7 @@ int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map,
     point.inverse_depth = depth.inverse_depth;
     point.inverse_depth_sigma = depth.sigma;
     point.corner = in_host.corner;
+    point.chain_keyframe = host.id;
     point.chain = in_host.chain;
     point.order = in_host.order;
     point.seen_in.assign(views.begin() + 1, views.end());

@@ -21,9 +21,9 @@ double medianDepth(const Map& map, const Keyframe& keyframe) {
 
 // By keyframe: whether its points are in the view.
 std::vector<char> keyframesInView(const Map& map, KeyframeId centre, const ViewOptions& options) {
-  const Keyframe& latest = map.keyframes[static_cast<std::size_t>(centre)];
+  const Keyframe& latest = map.keyframes[centre];
   const double reach = options.largest_distance * medianDepth(map, latest);
-  std::vector<char> in_view(map.keyframes.size(), 0);
+  std::vector<char> in_view(numberOfKeyframes(map), 0);
   std::vector<std::pair<double, KeyframeId>> near;
   for (const Keyframe& keyframe : map.keyframes) {
     if (keyframe.id <= latest.id && keyframe.id + options.latest_keyframes > latest.id) {
@@ -45,7 +45,7 @@ std::vector<char> keyframesInView(const Map& map, KeyframeId centre, const ViewO
 
 void writeSource(const Map& map, const MapPoint& point, ViewPoint& view_point) {
   const auto take = [&](KeyframeId id) {
-    const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
+    const Keyframe& keyframe = map.keyframes[id];
     if (!keyframe.images) return false;
     const PointObservation* observation = findObservation(keyframe, point.id);
     view_point.source = id;
@@ -63,8 +63,9 @@ void writeSource(const Map& map, const MapPoint& point, ViewPoint& view_point) {
 
 MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options) {
   MapView view;
-  for (const Keyframe& keyframe : map.keyframes) view.keyframe_poses.push_back(keyframe.world_T_camera);
-  view.keyframe_images.resize(map.keyframes.size());
+  for (const Keyframe& keyframe : map.keyframes) {
+    view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr});
+  }
   const std::vector<char> in_view = keyframesInView(map, centre, options);
   for (const auto& [id, point] : map.points) {
     const auto seen = [&](KeyframeId keyframe) { return in_view[static_cast<std::size_t>(keyframe)] != 0; };
@@ -77,8 +78,7 @@ MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options)
     view_point.inverse_depth_sigma = point.inverse_depth_sigma;
     writeSource(map, point, view_point);
     if (view_point.source >= 0) {
-      const auto source = static_cast<std::size_t>(view_point.source);
-      view.keyframe_images[source] = map.keyframes[source].images;
+      view.keyframes[view_point.source].images = map.keyframes[view_point.source].images;
     }
     view.points.push_back(view_point);
   }

@@ -87,14 +87,7 @@ void LockstepRun::hand(const std::vector<TrackedFrame>& frames, FrameRecord& rec
 // Places: the new keyframes are made known to relocalisation, and compared with the old ones.
 void LockstepRun::lookForLoop(FrameRecord& record) {
   const Map& map = mapper_.map();
-  const auto count = static_cast<KeyframeId>(map.keyframes.size());
-  if (count <= keyframes_known_) {  // a map begun anew
-    keyframes_known_ = 0;
-    relocalisation_.clear();
-  }
-  for (; keyframes_known_ < count; ++keyframes_known_) {
-    relocalisation_.addKeyframe(map.keyframes[static_cast<std::size_t>(keyframes_known_)]);
-  }
+  relocalisation_.update(map);
   bool closed = false;
   if (settings_.loops.enabled) {
     const LoopOutcome outcome = loop_closing_.addKeyframe(map);
@@ -119,7 +112,7 @@ void LockstepRun::lookForLoop(FrameRecord& record) {
 void LockstepRun::findAgain(FrameRecord& record) {
   if (!tracker_.hasLostFrame() || !mapper_.initialised()) return;
   const auto start = std::chrono::steady_clock::now();
-  const auto next_keyframe = static_cast<KeyframeId>(mapper_.map().keyframes.size());
+  const auto next_keyframe = mapper_.map().keyframes.back().id + 1;
   if (lost_frames_ <= 10) {
     const RecoveryResult recovery = mapper_.recover(tracker_.lostFrame(next_keyframe));
     if (recovery.found) {
@@ -162,8 +155,7 @@ void LockstepRun::goOnFrom(FrameRecord& record, TrackingState state, const Pose&
   record.covariance = covariance;
   record.mapped_points = static_cast<int>(points.size());
   references_.back() = centre;
-  reference_T_camera_.back() =
-      mapper_.map().keyframes[static_cast<std::size_t>(centre)].world_T_camera.inverse() * world_T_camera;
+  reference_T_camera_.back() = mapper_.map().keyframes[centre].world_T_camera.inverse() * world_T_camera;
   lost_frames_ = 0;
 }
 
@@ -210,10 +202,9 @@ RunResult LockstepRun::finish() {
   const Map& map = mapper_.map();
   for (std::size_t i = 0; i < result_.frames.size(); ++i) {
     const KeyframeId reference = references_[i];
-    if (reference < 0 || static_cast<std::size_t>(reference) >= map.keyframes.size()) continue;
+    if (reference < 0 || !map.keyframes.contains(reference)) continue;
     result_.frames[i].has_final_pose = true;
-    result_.frames[i].final_world_T_camera =
-        map.keyframes[static_cast<std::size_t>(reference)].world_T_camera * reference_T_camera_[i];
+    result_.frames[i].final_world_T_camera = map.keyframes[reference].world_T_camera * reference_T_camera_[i];
   }
   const auto frameOf = [&](std::int64_t index) {
     return std::lower_bound(result_.frames.begin(), result_.frames.end(), index,

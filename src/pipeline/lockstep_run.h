@@ -47,8 +47,7 @@ class LockstepRun {
   Mapper mapper_;
   Relocalisation relocalisation_;
   LoopClosing loop_closing_;
-  KeyframeId keyframes_known_ = 0;  // to places
-  int lost_frames_ = 0;             // in a row
+  int lost_frames_ = 0;  // in a row
   Pose last_good_pose_;
   std::int64_t last_good_ns_ = 0;
   RunResult result_;

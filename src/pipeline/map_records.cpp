@@ -6,9 +6,11 @@ namespace edgeslam {
 namespace {
 
 struct ChainKey {
-  KeyframeId host;
+  KeyframeId keyframe;
   int chain;
-  bool operator<(const ChainKey& other) const { return host != other.host ? host < other.host : chain < other.chain; }
+  bool operator<(const ChainKey& other) const {
+    return keyframe != other.keyframe ? keyframe < other.keyframe : chain < other.chain;
+  }
 };
 
 // Direction of the edge in space from its neighbours along the chain: the chord between them.
@@ -42,7 +44,7 @@ std::vector<KeyframeRecord> keyframeRecords(const Map& map) {
 
 std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera) {
   std::map<ChainKey, std::vector<const MapPoint*>> chains;
-  for (const auto& [id, point] : map.points) chains[{point.host, point.chain}].push_back(&point);
+  for (const auto& [id, point] : map.points) chains[{point.chain_keyframe, point.chain}].push_back(&point);
   std::vector<MapPointRecord> records;
   int chain_number = 0;
   for (auto& [key, points] : chains) {
@@ -54,7 +56,7 @@ std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera
       record.chain = chain_number;
       record.order = point->order;
       record.depth_sigma_ratio = static_cast<float>(point->inverse_depth_sigma / point->inverse_depth);
-      const Keyframe& host = map.keyframes[static_cast<std::size_t>(point->host)];
+      const Keyframe& host = map.keyframes[point->host];
       const Eigen::Vector2d pixel = project(camera, point->host_bearing);
       if (host.images && insideImage(camera, pixel, 1)) {
         record.grey = host.images->pyramid.levels[0].at<unsigned char>(static_cast<int>(pixel.y() + 0.5),

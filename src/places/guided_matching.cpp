@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBorder = 8;  // [px]
 
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[static_cast<std::size_t>(id)]; }
+const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
 // The keyframe, among those that see a point and have images, from where it is seen most like from `centre` (world
 // frame): at the smallest angle, of those within a few degrees the one at the most similar distance. -1 where there is

@@ -30,7 +30,7 @@ struct RoundResult {
 // Where a point of uncertain depth may be in the image (design, section 5: its depth's variance is kept and used).
 void addDepthUncertainty(const Camera& camera, const Map& map, const MapPoint& point, const Pose& camera_T_world,
                          PoseObservation& observation) {
-  const Pose camera_T_host = camera_T_world * map.keyframes[static_cast<std::size_t>(point.host)].world_T_camera;
+  const Pose camera_T_host = camera_T_world * map.keyframes[point.host].world_T_camera;
   const Eigen::Vector3d scaled =
       camera_T_host.rotation * point.host_bearing + point.inverse_depth * camera_T_host.translation;
   if (!(scaled.z() > 1e-3)) return;
@@ -181,7 +181,7 @@ std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neigh
   order.push_back(keyframe);
   std::vector<PointId> points;
   for (const KeyframeId k : order) {
-    for (const PointObservation& observation : map.keyframes[static_cast<std::size_t>(k)].observations) {
+    for (const PointObservation& observation : map.keyframes[k].observations) {
       if (map.points.count(observation.point) > 0) points.push_back(observation.point);
     }
   }
@@ -201,7 +201,7 @@ std::vector<SearchPoint> searchPoints(const Map& map, const std::vector<PointId>
     const Keyframe* nearest = nullptr;
     double least_difference = std::numeric_limits<double>::max();
     const auto consider = [&](KeyframeId k) {
-      const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(k)];
+      const Keyframe& keyframe = map.keyframes[k];
       if (!keyframe.images) return;
       const Eigen::Vector3d its_ray = position - keyframe.world_T_camera.translation;
       const double difference = (ray - its_ray).norm();

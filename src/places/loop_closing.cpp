@@ -7,13 +7,15 @@
 namespace edgeslam {
 namespace {
 
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[static_cast<std::size_t>(id)]; }
+const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
 // Length of the way from one keyframe to a later one.
 double wayBetween(const Map& map, KeyframeId from, KeyframeId to) {
   double way = 0;
-  for (KeyframeId k = from; k < to; ++k) {
-    way += (keyframeOf(map, k + 1).world_T_camera.translation - keyframeOf(map, k).world_T_camera.translation).norm();
+  for (std::size_t place = map.keyframes.placeOf(from); place < map.keyframes.placeOf(to); ++place) {
+    way += (map.keyframes.atPlace(place + 1).world_T_camera.translation -
+            map.keyframes.atPlace(place).world_T_camera.translation)
+               .norm();
   }
   return way;
 }
@@ -72,13 +74,14 @@ LoopOutcome LoopClosing::addKeyframe(const Map& map) {
   if (!options_.enabled || map.keyframes.empty()) return outcome;
   describeNew(map);
   outcome.current = map.keyframes.back().id;
-  const auto& current = known_.back().signature;
+  const auto& current = known_.at(outcome.current).signature;
   if (!current) return outcome;
   if (last_loop_ >= 0 && outcome.current - last_loop_ <= options_.pause_keyframes) return outcome;
 
-  std::vector<double> scores;
-  for (std::size_t k = 0; k + 1 < known_.size(); ++k) {
-    scores.push_back(known_[k].signature ? score(*known_[k].signature, *current) : kNoScore);
+  std::vector<double> scores(static_cast<std::size_t>(outcome.current), kNoScore);
+  for (const auto& [id, known] : known_) {
+    if (id != outcome.current && known.signature)
+      scores[static_cast<std::size_t>(id)] = score(*known.signature, *current);
   }
   const LoopDetection detection = detectLoops(map, outcome.current, scores, options_.detection);
   outcome.bar = detection.bar;
@@ -101,25 +104,21 @@ LoopOutcome LoopClosing::addKeyframe(const Map& map) {
 }
 
 void LoopClosing::describeNew(const Map& map) {
-  // A map begun anew, or with keyframes taken out: what no longer fits is described again.
-  std::size_t fitting = 0;
-  while (fitting < known_.size() && fitting < map.keyframes.size() &&
-         known_[fitting].frame_index == map.keyframes[fitting].frame_index) {
-    ++fitting;
+  for (auto known = known_.begin(); known != known_.end();) {
+    const Keyframe* keyframe = map.keyframes.find(known->first);
+    const bool fits = keyframe && keyframe->frame_index == known->second.frame_index;
+    known = fits ? std::next(known) : known_.erase(known);
   }
-  if (fitting < known_.size()) {
-    known_.resize(fitting);
-    last_loop_ = std::min(last_loop_, static_cast<KeyframeId>(fitting) - 1);
-  }
-  for (std::size_t k = fitting; k < map.keyframes.size(); ++k) {
-    const Keyframe& keyframe = map.keyframes[k];
+  if (last_loop_ > map.keyframes.back().id) last_loop_ = -1;
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (known_.count(keyframe.id) > 0) continue;
     Known known;
     known.frame_index = keyframe.frame_index;
     if (keyframe.images) {
       const cv::Mat& grey = keyframe.images->pyramid.levels[0];
       known.signature = edgeSignature(grey, detectEdges(grey, options_.edges));
     }
-    known_.push_back(std::move(known));
+    known_.emplace(keyframe.id, std::move(known));
   }
 }
 

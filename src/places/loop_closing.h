@@ -53,8 +53,8 @@ class LoopClosing {
  public:
   LoopClosing(const Camera& camera, const LoopClosingOptions& options) : camera_(camera), options_(options) {}
 
-  // The map's latest keyframe, once for each, after the local adjustment. A map that was begun anew is told by fewer
-  // keyframes or other images. Verifies at most options.detection.most_candidates.
+  // The map's latest keyframe, once for each, after the local adjustment. A map that was begun anew is told by the
+  // frames of its keyframes. Verifies at most options.detection.most_candidates.
   LoopOutcome addKeyframe(const Map& map);
 
  private:
@@ -69,7 +69,7 @@ class LoopClosing {
 
   Camera camera_;
   LoopClosingOptions options_;
-  std::vector<Known> known_;   // by keyframe
+  std::map<KeyframeId, Known> known_;
   KeyframeId last_loop_ = -1;  // keyframe at which the last loop was accepted
 };
 

@@ -8,7 +8,7 @@
 namespace edgeslam {
 namespace {
 
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[static_cast<std::size_t>(id)]; }
+const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
 Similarity similarityOf(const Pose& pose) { return {1, pose.rotation, pose.translation}; }
 
@@ -26,19 +26,21 @@ PoseGraph graphOf(const Map& map, KeyframeId current, KeyframeId candidate, cons
                   double length, const LoopCorrectionOptions& options) {
   PoseGraph graph;
   graph.length = length;
+  const auto nodeOf = [&](KeyframeId id) { return static_cast<int>(map.keyframes.placeOf(id)); };
   for (const Keyframe& keyframe : map.keyframes) {
-    graph.nodes.push_back({similarityOf(keyframe.world_T_camera), keyframe.id == 0});
+    graph.nodes.push_back({similarityOf(keyframe.world_T_camera), graph.nodes.empty()});
   }
   for (const Keyframe& keyframe : map.keyframes) {
     const std::vector<int> shared = sharedPoints(map, keyframe.id);
-    for (KeyframeId other = 0; other < keyframe.id; ++other) {
-      const bool consecutive = other + 1 == keyframe.id;
-      if (!consecutive && shared[static_cast<std::size_t>(other)] < options.covisible_points) continue;
-      const Pose from_T_to = keyframeOf(map, other).world_T_camera.inverse() * keyframe.world_T_camera;
-      graph.edges.push_back({other, keyframe.id, similarityOf(from_T_to), 1.0});
+    for (const Keyframe& other : map.keyframes) {
+      if (other.id >= keyframe.id) break;
+      const bool consecutive = nodeOf(other.id) + 1 == nodeOf(keyframe.id);
+      if (!consecutive && shared[static_cast<std::size_t>(other.id)] < options.covisible_points) continue;
+      const Pose from_T_to = other.world_T_camera.inverse() * keyframe.world_T_camera;
+      graph.edges.push_back({nodeOf(other.id), nodeOf(keyframe.id), similarityOf(from_T_to), 1.0});
     }
   }
-  graph.edges.push_back({current, candidate, current_S_candidate, options.loop_weight});
+  graph.edges.push_back({nodeOf(current), nodeOf(candidate), current_S_candidate, options.loop_weight});
   return graph;
 }
 
@@ -86,8 +88,8 @@ bool computeCorrection(const Camera& camera, const Map& map, KeyframeId current,
   correction.current = current;
   correction.candidate = candidate;
   for (const Keyframe& keyframe : map.keyframes) {
-    const Similarity& corrected = graph.nodes[static_cast<std::size_t>(keyframe.id)].world_S_node;
-    correction.new_world_S_world.push_back(corrected * similarityOf(keyframe.world_T_camera).inverse());
+    const Similarity& corrected = graph.nodes[map.keyframes.placeOf(keyframe.id)].world_S_node;
+    correction.new_world_S_world[keyframe.id] = corrected * similarityOf(keyframe.world_T_camera).inverse();
   }
 
   for (const auto& found : loop.found) {
@@ -119,7 +121,8 @@ void applyCorrection(const LoopCorrection& correction, Map& map) {
   if (correction.new_world_S_world.empty()) return;
   const auto& moves = correction.new_world_S_world;
   const auto moveOf = [&](KeyframeId id) -> const Similarity& {
-    return moves[std::min(static_cast<std::size_t>(id), moves.size() - 1)];
+    const auto after = moves.upper_bound(id);
+    return after == moves.begin() ? after->second : std::prev(after)->second;
   };
   for (Keyframe& keyframe : map.keyframes) {
     const Similarity& move = moveOf(keyframe.id);
@@ -132,10 +135,10 @@ void applyCorrection(const LoopCorrection& correction, Map& map) {
     point.inverse_depth_sigma /= scale;
   }
   for (const auto& [id, observation] : correction.observations) {
-    if (static_cast<std::size_t>(id) >= map.keyframes.size()) continue;
+    if (!map.keyframes.contains(id)) continue;
     const auto point = map.points.find(observation.point);
     if (point == map.points.end() || point->second.host == id) continue;
-    Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
+    Keyframe& keyframe = map.keyframes[id];
     const auto place = std::lower_bound(keyframe.observations.begin(), keyframe.observations.end(), observation.point,
                                         [](const PointObservation& o, PointId wanted) { return o.point < wanted; });
     if (place != keyframe.observations.end() && place->point == observation.point) continue;

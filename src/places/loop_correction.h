@@ -25,8 +25,9 @@ struct LoopCorrection {
     PointObservation observation;  // of a point of the old side
   };
   KeyframeId current = -1, candidate = -1;
-  std::vector<Similarity> new_world_S_world;  // by keyframe: moves it and the points that it hosts
-  std::vector<Observation> observations;      // by keyframe, then point
+  // Moves a keyframe and the points that it hosts; a keyframe made since moves as the one before it.
+  std::map<KeyframeId, Similarity> new_world_S_world;
+  std::vector<Observation> observations;  // by keyframe, then point
 };
 
 // False where the pose graph failed: then the correction is empty.

@@ -25,10 +25,11 @@ struct LoopDetection {
   std::vector<LoopCandidate> candidates;  // best first
 };
 
-// Score of a keyframe that cannot be compared: it has no images.
+// Score of a keyframe that cannot be compared: it has no images, or is culled.
 constexpr double kNoScore = -1;
 
-// `scores`: likeness of each earlier keyframe to `current`, in [0, 1], by keyframe number, or kNoScore. A keyframe is a
+// `scores`: likeness of each earlier keyframe to `current`, in [0, 1], by keyframe number, or kNoScore where it
+// cannot be compared or is culled. A keyframe is a
 // candidate where it shares no map point with the current one, is not recent, and it and its neighbours in the order of
 // the keyframes, `consecutive` in a row, are all over the bar; it is the best among these. Keyframes without a score
 // are left out as if they were not there.

@@ -26,9 +26,7 @@ const PlacePoint& pointAt(const PlaceView& view, int index) { return view.points
 
 std::vector<PlaceCorrespondence> descriptorPairs(const Map& map, const PlaceView& current, const PlaceView& candidate,
                                                  const LoopVerificationOptions& options) {
-  const auto poseOf = [&](const PlaceView& view) {
-    return map.keyframes[static_cast<std::size_t>(view.keyframe)].world_T_camera;
-  };
+  const auto poseOf = [&](const PlaceView& view) { return map.keyframes[view.keyframe].world_T_camera; };
   std::vector<PlaceCorrespondence> pairs;
   for (const auto& [i, j] :
        matchKeyframes(current, candidate, poseOf(current).inverse() * poseOf(candidate), options.matching)) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSpacing = 3;  // [px]
 constexpr double kBorder = 8;   // [px]
 
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[static_cast<std::size_t>(id)]; }
+const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
 PlacePoint placePoint(const Map& map, const MapPoint& point, const Pose& camera_T_world) {
   PlacePoint placed;

@@ -22,8 +22,8 @@ bool isReachable(const std::optional<Reachable>& reachable, const Pose& pose, do
 
 Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double seconds) {
   double fastest = 0, farthest = 0;
-  for (std::size_t k = 1; k < map.keyframes.size(); ++k) {
-    const Keyframe &a = map.keyframes[k - 1], &b = map.keyframes[k];
+  for (std::size_t place = 1; place < map.keyframes.size(); ++place) {
+    const Keyframe &a = map.keyframes.atPlace(place - 1), &b = map.keyframes.atPlace(place);
     const double distance = (b.world_T_camera.translation - a.world_T_camera.translation).norm();
     const double elapsed = 1e-9 * static_cast<double>(b.time_ns - a.time_ns);
     farthest = std::max(farthest, distance);
@@ -47,17 +47,29 @@ void Relocalisation::addKeyframe(const Keyframe& keyframe) {
     pixels.emplace_back(observation->measurement.pixel.cast<float>());
   }
   KnownKeyframe known;
+  known.frame_index = keyframe.frame_index;
   known.thumbnail = makeThumbnail(pyramid);
   known.described = describeAtTwoSizes(pyramid.levels[0], pixels, 0);
   for (const int index : known.described.points) known.points.push_back(chosen[static_cast<std::size_t>(index)]->point);
   keyframes_[keyframe.id] = std::move(known);
 }
 
+void Relocalisation::update(const Map& map) {
+  for (auto known = keyframes_.begin(); known != keyframes_.end();) {
+    const Keyframe* keyframe = map.keyframes.find(known->first);
+    const bool fits = keyframe && keyframe->frame_index == known->second.frame_index;
+    known = fits ? std::next(known) : keyframes_.erase(known);
+  }
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (keyframes_.count(keyframe.id) == 0) addKeyframe(keyframe);
+  }
+}
+
 std::vector<Relocalisation::Candidate> Relocalisation::candidates(const Map& map, const Thumbnail& thumbnail) const {
   const auto better = [](const Candidate& a, const Candidate& b) { return a.match.correlation > b.match.correlation; };
   std::vector<Candidate> ranked;
   for (const auto& [id, known] : keyframes_) {
-    if (static_cast<std::size_t>(id) >= map.keyframes.size() || known.thumbnail.size() != thumbnail.size()) continue;
+    if (!map.keyframes.contains(id) || known.thumbnail.size() != thumbnail.size()) continue;
     ranked.push_back({id, matchShifted(known.thumbnail, thumbnail)});
   }
   std::stable_sort(ranked.begin(), ranked.end(), better);
@@ -78,7 +90,7 @@ std::vector<Relocalisation::Candidate> Relocalisation::differentPlaces(const Map
   for (const Candidate& candidate : ranked) {
     if (static_cast<int>(chosen.size()) == wanted) return chosen;
     const std::vector<int> shared = sharedPoints(map, candidate.keyframe);
-    const auto& observations = map.keyframes[static_cast<std::size_t>(candidate.keyframe)].observations;
+    const auto& observations = map.keyframes[candidate.keyframe].observations;
     const auto mapped = static_cast<double>(std::count_if(
         observations.begin(), observations.end(), [&](const auto& o) { return map.points.count(o.point) > 0; }));
     int of_this_place = 0;
@@ -115,7 +127,7 @@ std::vector<Relocalisation::Start> Relocalisation::startsByTurning(const Map& ma
                                                                    const std::vector<Candidate>& candidates) const {
   std::vector<Start> starts;
   for (const Candidate& candidate : candidates) {
-    const Pose& pose = map.keyframes[static_cast<std::size_t>(candidate.keyframe)].world_T_camera;
+    const Pose& pose = map.keyframes[candidate.keyframe].world_T_camera;
     starts.push_back({candidate.keyframe, pose * Pose{rotationOf(camera_, candidate.match), Eigen::Vector3d::Zero()}});
   }
   return starts;

@@ -63,8 +63,8 @@ class Relocalisation {
 
   // A keyframe without images is passed over; one already known is taken anew.
   void addKeyframe(const Keyframe& keyframe);
-  void removeKeyframe(KeyframeId id) { keyframes_.erase(id); }
-  void clear() { keyframes_.clear(); }
+  // The same for each keyframe of the map that is not known yet; those no longer in the map are forgotten.
+  void update(const Map& map);
 
   // The pose of a frame of which nothing is known but, where given, what can be reached. Where things repeat and two
   // different poses are as good, there is none. `map`'s keyframes are those added, where they are now. Same input, same
@@ -74,6 +74,7 @@ class Relocalisation {
 
  private:
   struct KnownKeyframe {
+    std::int64_t frame_index = -1;
     Thumbnail thumbnail;
     std::vector<PointId> points;  // those described, in the order of `described.points`
     DescribedPoints described;

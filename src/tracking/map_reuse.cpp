@@ -7,12 +7,12 @@ namespace edgeslam {
 namespace {
 
 SearchPoint searchPointOf(const MapView& view, const ViewPoint& point) {
-  const auto source = static_cast<std::size_t>(point.source);
+  const ViewKeyframe& source = view.keyframes[point.source];
   SearchPoint search;
   search.id = point.id;
   search.position = worldPosition(view, point);
-  search.source_images = view.keyframe_images[source];
-  search.world_T_source = view.keyframe_poses[source];
+  search.source_images = source.images;
+  search.world_T_source = source.world_T_camera;
   search.source_pixel = point.source_measurement.pixel.cast<float>();
   search.source_normal = point.source_measurement.normal.cast<float>();
   search.corner = point.corner;

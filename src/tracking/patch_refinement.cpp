@@ -10,10 +10,11 @@ enum class Refinement { refined, unchanged, lost };
 
 Refinement refine(const Camera& camera, const MapView& view, const FrameImages& images, const Pose& camera_T_world,
                   double scene_depth, const RefinementOptions& options, Track& track) {
-  if (!track.keyframe_images || static_cast<std::size_t>(track.keyframe) >= view.keyframe_poses.size()) {
+  const ViewKeyframe* keyframe = view.keyframes.find(track.keyframe);
+  if (!track.keyframe_images || !keyframe) {
     return Refinement::unchanged;
   }
-  const Pose& world_T_keyframe = view.keyframe_poses[static_cast<std::size_t>(track.keyframe)];
+  const Pose& world_T_keyframe = keyframe->world_T_camera;
   double depth = scene_depth;
   if (const ViewPoint* point = findPoint(view, track.id)) {
     depth = (worldPosition(view, *point) - world_T_keyframe.translation).norm();

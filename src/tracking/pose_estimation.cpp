@@ -11,7 +11,7 @@ PoseObservation observationOf(const Camera& camera, const MapView& view, const V
   PoseObservation observation;
   observation.point = worldPosition(view, point);
   observation.measurement = measurementOf(track);
-  const Pose camera_T_host = predicted_T_world * view.keyframe_poses[static_cast<std::size_t>(point.host)];
+  const Pose camera_T_host = predicted_T_world * view.keyframes[point.host].world_T_camera;
   const Eigen::Vector3d scaled =
       camera_T_host.rotation * point.host_bearing + point.inverse_depth * camera_T_host.translation;
   if (scaled.z() > 1e-3) {

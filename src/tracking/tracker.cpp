@@ -7,6 +7,20 @@
 #include "tracking/point_following.h"
 
 namespace edgeslam {
+namespace {
+
+// How the world moved from one view to the next, by the latest keyframe that both know.
+Pose newWorldTOldWorld(const MapView& old_view, const MapView& new_view) {
+  for (std::size_t place = new_view.keyframes.size(); place-- > 0;) {
+    const ViewKeyframe& keyframe = new_view.keyframes.atPlace(place);
+    const ViewKeyframe* before = old_view.keyframes.find(keyframe.id);
+    if (before) return keyframe.world_T_camera * before->world_T_camera.inverse();
+  }
+  return Pose();
+}
+
+}  // namespace
+
 TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey) {
   TrackingOutcome outcome;
   StageClock clock(outcome.times);
@@ -65,8 +79,8 @@ TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, c
   outcome.reason = view_.initialised ? "" : view_.waiting_for;
   outcome.world_T_camera = frame.world_T_camera;
   outcome.covariance = frame.pose.covariance;
-  outcome.reference = static_cast<KeyframeId>(view_.keyframe_poses.size()) - 1;
-  outcome.reference_T_camera = view_.keyframe_poses.back().inverse() * frame.world_T_camera;
+  outcome.reference = view_.keyframes.back().id;
+  outcome.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * frame.world_T_camera;
   outcome.tracked_points = static_cast<int>(frame.tracks.size());
   outcome.mapped_points = frame.pose.inlier_count;
   if (!view_.initialised) outcome.for_mapping.push_back(describe(frame, -1, ""));
@@ -174,7 +188,7 @@ Pose Tracker::alignImages(const TrackedState& from, const TrackedState& to, cons
 KeyframeDecision Tracker::judge(const TrackedState& frame) const {
   KeyframeEvidence evidence;
   evidence.rotation_deg =
-      rotationAngle(view_.keyframe_poses.back().rotation, frame.world_T_camera.rotation) * 180.0 / M_PI;
+      rotationAngle(view_.keyframes.back().world_T_camera.rotation, frame.world_T_camera.rotation) * 180.0 / M_PI;
   for (const Track& track : frame.tracks)
     evidence.mean_displacement_px += (track.pixel - track.last_keyframe_pixel).norm();
   evidence.mean_displacement_px /= std::max<double>(1, static_cast<double>(frame.tracks.size()));
@@ -198,7 +212,7 @@ void Tracker::becomeKeyframe(TrackedState& frame, const char* reason, TrackingOu
   choosePointsIn(frame, next_keyframe_);
   outcome.for_mapping.push_back(describe(frame, next_keyframe_++, reason));
   // Until mapping answers, the keyframe stands where tracking saw it.
-  view_.keyframe_poses.push_back(frame.world_T_camera);
+  view_.keyframes.push_back({next_keyframe_ - 1, frame.world_T_camera, nullptr});
   keyframe_time_ns_ = frame.images->time_ns;
   frames_since_keyframe_ = 0;
   mapped_at_keyframe_ = 0;
@@ -262,8 +276,8 @@ TrackingOutcome Tracker::skip(std::int64_t time_ns, const std::string& reason) c
   outcome.covariance = last_.pose.covariance;
   outcome.covariance.diagonal().head<3>().array() += translation * translation;
   outcome.covariance.diagonal().tail<3>().array() += rotation * rotation;
-  outcome.reference = static_cast<KeyframeId>(view_.keyframe_poses.size()) - 1;
-  outcome.reference_T_camera = view_.keyframe_poses.back().inverse() * outcome.world_T_camera;
+  outcome.reference = view_.keyframes.back().id;
+  outcome.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * outcome.world_T_camera;
   return outcome;
 }
 
@@ -298,7 +312,7 @@ void Tracker::resume(const MapView& view, const Pose& world_T_camera, const Matr
   frame.world_T_camera = world_T_camera;
   frame.pose.covariance = covariance;
   view_ = view;
-  next_keyframe_ = static_cast<KeyframeId>(view.keyframe_poses.size());
+  next_keyframe_ = view.keyframes.back().id + 1;
   last_ = std::move(frame);
   last_T_next_ = Pose();
   interval_ns_ = 0;
@@ -313,22 +327,17 @@ void Tracker::adopt(const MapView& view) {
   if (view.version <= view_.version && view.origin_frame == view_.origin_frame) return;
   if (!last_.images || view.origin_frame != view_.origin_frame) return;
   const bool first = view.initialised && !view_.initialised;
-  const KeyframeId latest_known = static_cast<KeyframeId>(view.keyframe_poses.size()) - 1;
-  // Keyframes that mapping has not seen yet keep their place relative to the last one that it has.
-  std::vector<Pose> newer;
-  for (std::size_t i = view.keyframe_poses.size(); i < view_.keyframe_poses.size(); ++i) {
-    newer.push_back(view_.keyframe_poses[static_cast<std::size_t>(latest_known)].inverse() * view_.keyframe_poses[i]);
+  // What mapping has not seen yet keeps its place relative to the latest keyframe known to both.
+  const Pose new_T_old = newWorldTOldWorld(view_, view);
+  MapView newer = view;
+  for (const ViewKeyframe& keyframe : view_.keyframes) {
+    if (keyframe.id <= view.keyframes.back().id) continue;
+    newer.keyframes.push_back({keyframe.id, new_T_old * keyframe.world_T_camera, nullptr});
   }
-  const Pose reference = view_.keyframe_poses[std::min(view_.keyframe_poses.size(), view.keyframe_poses.size()) - 1];
-  const KeyframeId reference_id =
-      static_cast<KeyframeId>(std::min(view_.keyframe_poses.size(), view.keyframe_poses.size())) - 1;
-  const Pose moved =
-      view.keyframe_poses[static_cast<std::size_t>(reference_id)] * reference.inverse() * last_.world_T_camera;
-  view_ = view;
-  for (const Pose& pose : newer)
-    view_.keyframe_poses.push_back(view.keyframe_poses[static_cast<std::size_t>(latest_known)] * pose);
+  const Pose moved = new_T_old * last_.world_T_camera;
+  view_ = std::move(newer);
   if (first) {
-    next_keyframe_ = static_cast<KeyframeId>(view_.keyframe_poses.size());
+    next_keyframe_ = view_.keyframes.back().id + 1;
     keyframe_time_ns_ = last_.images->time_ns;
     frames_since_keyframe_ = options_.keyframes.least_frames_apart;
     mapped_at_keyframe_ = options_.keyframes.fewest_mapped * 2;  // the first view asks for a keyframe with fresh points

@@ -66,7 +66,7 @@ TEST(Map, APointLiesAlongItsHostsBearing) {
 
 TEST(MapView, FindsPointsAndPlacesThemAsTheMapDoes) {
   MapView view;
-  view.keyframe_poses = {Pose(), {rotationExp({0, M_PI / 2, 0}), {1, 2, 3}}};
+  view.keyframes = {{0, Pose(), nullptr}, {1, {rotationExp({0, M_PI / 2, 0}), {1, 2, 3}}, nullptr}};
   for (const PointId id : {3, 8, 20}) {
     ViewPoint point;
     point.id = id;

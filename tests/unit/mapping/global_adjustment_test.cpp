@@ -91,7 +91,7 @@ TEST(GlobalAdjustment, OutliersAreTakenOut) {
   Map map = makeMap(camera, 8, 150, 4);
   const PointId wrong = map.points.begin()->first;
   const KeyframeId keyframe = map.points.at(wrong).seen_in.back();
-  for (PointObservation& observation : map.keyframes[static_cast<std::size_t>(keyframe)].observations) {
+  for (PointObservation& observation : map.keyframes[keyframe].observations) {
     if (observation.point == wrong) observation.measurement.pixel += 40 * observation.measurement.normal;
   }
   ASSERT_TRUE(adjustGlobally(camera, {}, {}, map));
@@ -105,7 +105,7 @@ TEST(GlobalAdjustment, TooLittleOfAMapIsLeftAlone) {
   const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
   Map map;
   EXPECT_FALSE(adjustGlobally(camera, {}, {}, map));
-  map.keyframes.emplace_back();
+  map.keyframes.push_back(Keyframe());
   EXPECT_FALSE(adjustGlobally(camera, {}, {}, map));
 }
 

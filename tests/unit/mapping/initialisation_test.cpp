@@ -115,10 +115,10 @@ TEST(Initialisation, TheMapIsWhole) {
     EXPECT_GT(point.inverse_depth_sigma, 0);
     EXPECT_NEAR(point.host_bearing.norm(), 1, 1e-9);
     ASSERT_FALSE(point.seen_in.empty());
-    EXPECT_NE(findObservation(map.keyframes[static_cast<std::size_t>(point.host)], id), nullptr);
+    EXPECT_NE(findObservation(map.keyframes[point.host], id), nullptr);
     for (const KeyframeId k : point.seen_in) {
       EXPECT_NE(k, point.host);
-      EXPECT_NE(findObservation(map.keyframes[static_cast<std::size_t>(k)], id), nullptr);
+      EXPECT_NE(findObservation(map.keyframes[k], id), nullptr);
     }
   }
 }
@@ -196,7 +196,7 @@ TEST(Initialisation, TheProvisionalViewHoldsTheFirstFramesPoints) {
   MapView view;
   start.initialisation.writeProvisional(view);
   EXPECT_EQ(view.origin_frame, 0);
-  EXPECT_EQ(view.keyframe_poses.size(), 1U);
+  EXPECT_EQ(view.keyframes.size(), 1U);
   ASSERT_EQ(view.points.size(), start.first_points.size());
   for (std::size_t i = 0; i < view.points.size(); ++i) {
     EXPECT_EQ(view.points[i].id, start.first_points[i]);

@@ -39,14 +39,14 @@ bool has(const MapView& view, PointId id) { return findPoint(view, id) != nullpt
 TEST(ViewOfMap, ShowsAllPosesAndThePointsOfTheLatestKeyframes) {
   const Map map = rowOfKeyframes(40);
   const MapView view = viewOfMap(map, 39, ViewOptions());
-  ASSERT_EQ(view.keyframe_poses.size(), 40u);
-  EXPECT_EQ(view.keyframe_poses[17].translation.x(), 17);
+  ASSERT_EQ(view.keyframes.size(), 40u);
+  EXPECT_EQ(view.keyframes[17].world_T_camera.translation.x(), 17);
   EXPECT_TRUE(has(view, 39));
   EXPECT_TRUE(has(view, 32));
   EXPECT_FALSE(has(view, 5)) << "far behind";
   for (const ViewPoint& point : view.points) {
     ASSERT_GE(point.source, 0);
-    EXPECT_TRUE(view.keyframe_images[static_cast<std::size_t>(point.source)]);
+    EXPECT_TRUE(view.keyframes[point.source].images);
   }
 }
 

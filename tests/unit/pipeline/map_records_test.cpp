@@ -54,8 +54,10 @@ TEST(MapRecords, DirectionsRunAlongTheEdges) {
 
 TEST(MapRecords, EdgesOfDifferentKeyframesAreDifferentEdges) {
   Map map;
-  map.keyframes.resize(2);
   for (const KeyframeId host : {0, 1}) {
+    Keyframe keyframe;
+    keyframe.id = host;
+    map.keyframes.push_back(keyframe);
     for (int k = 0; k < 3; ++k) {
       MapPoint point;
       point.id = 10 * host + k;
@@ -63,6 +65,7 @@ TEST(MapRecords, EdgesOfDifferentKeyframesAreDifferentEdges) {
       point.host_bearing = Eigen::Vector3d(0.1 * k, 0, 1).normalized();
       point.inverse_depth = 0.5;
       point.inverse_depth_sigma = 0.05;
+      point.chain_keyframe = host;
       point.chain = 7;  // the number that it has in its keyframe
       point.order = k;
       map.points.emplace(point.id, point);

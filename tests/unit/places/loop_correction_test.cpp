@@ -23,7 +23,7 @@ bool sortedAndWhole(const Map& map) {
     for (std::size_t i = 0; i < point.seen_in.size(); ++i) {
       if (i > 0 && point.seen_in[i - 1] >= point.seen_in[i]) return false;
       if (point.seen_in[i] == point.host) return false;
-      if (!findObservation(map.keyframes[static_cast<std::size_t>(point.seen_in[i])], id)) return false;
+      if (!findObservation(map.keyframes[point.seen_in[i]], id)) return false;
     }
   }
   return true;
@@ -31,7 +31,7 @@ bool sortedAndWhole(const Map& map) {
 
 Map firstKeyframes(const Map& map, std::size_t count) {
   Map part;
-  part.keyframes.assign(map.keyframes.begin(), map.keyframes.begin() + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t k = 0; k < count; ++k) part.keyframes.push_back(map.keyframes.atPlace(k));
   for (auto [id, point] : map.points) {
     if (static_cast<std::size_t>(point.host) >= count) continue;
     while (!point.seen_in.empty() && static_cast<std::size_t>(point.seen_in.back()) >= count) point.seen_in.pop_back();
@@ -85,7 +85,7 @@ TEST_F(LoopCorrectionTest, PointsStayAttachedToTheirHosts) {
   applyCorrection(correction, map);
   for (const auto& [id, point] : map.points) {
     const MapPoint& before = place->points.at(id);
-    const Similarity& move = correction.new_world_S_world[static_cast<std::size_t>(point.host)];
+    const Similarity& move = correction.new_world_S_world.at(point.host);
     EXPECT_LT((worldPosition(map, point) - move * worldPosition(*place, before)).norm(), 1e-9);
     EXPECT_NEAR(point.inverse_depth_sigma / point.inverse_depth, before.inverse_depth_sigma / before.inverse_depth,
                 1e-12);
@@ -104,7 +104,7 @@ TEST_F(LoopCorrectionTest, OldPointsAreSeenByTheNewSideOnce) {
 
   Map twice = map;
   LoopCorrection still = correction;
-  for (Similarity& move : still.new_world_S_world) move = {};
+  for (auto& [keyframe, move] : still.new_world_S_world) move = {};
   applyCorrection(still, twice);
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     EXPECT_EQ(twice.keyframes[k].observations.size(), map.keyframes[k].observations.size());
@@ -119,7 +119,7 @@ TEST_F(LoopCorrectionTest, AMapThatWentOnGoesAlong) {
   Map now = *place;
   now.points.erase(correction.observations.front().observation.point);
   applyCorrection(correction, now);
-  const Similarity& last = correction.new_world_S_world.back();
+  const Similarity& last = correction.new_world_S_world.rbegin()->second;
   for (std::size_t k = kTurn + 2; k < now.keyframes.size(); ++k) {
     const Eigen::Vector3d moved = last * place->keyframes[k].world_T_camera.translation;
     EXPECT_LT((now.keyframes[k].world_T_camera.translation - moved).norm(), 1e-12);
@@ -175,15 +175,14 @@ TEST_F(LoopCorrectionTest, NoDriftIsThatLarge) {
 TEST_F(LoopCorrectionTest, LoopsThatContradictEachOtherAreRefused) {
   const KeyframeId current = kTurn + 1;
   const auto loopTo = [&](KeyframeId candidate, const Pose& world_T_current) {
-    const Pose current_T_candidate =
-        world_T_current.inverse() * place->keyframes[static_cast<std::size_t>(candidate)].world_T_camera;
+    const Pose current_T_candidate = world_T_current.inverse() * place->keyframes[candidate].world_T_camera;
     JudgedLoop loop;
     loop.keyframe = candidate;
     loop.accepted = true;
     loop.verification.current_S_candidate = test::asSimilarity(current_T_candidate);
     return loop;
   };
-  const Pose here = place->keyframes[static_cast<std::size_t>(current)].world_T_camera;
+  const Pose here = place->keyframes[current].world_T_camera;
   Pose near = here, away = here, turned = here;
   near.translation.x() += 0.1;
   away.translation.x() += 4;

@@ -26,8 +26,8 @@ std::vector<int> numbers(const LoopDetection& detection) {
 void share(Map& map, KeyframeId a, KeyframeId b) {
   PointObservation observation;
   observation.point = static_cast<PointId>(map.points.size());
-  map.keyframes[static_cast<std::size_t>(a)].observations.push_back(observation);
-  map.keyframes[static_cast<std::size_t>(b)].observations.push_back(observation);
+  map.keyframes[a].observations.push_back(observation);
+  map.keyframes[b].observations.push_back(observation);
   MapPoint point;
   point.id = observation.point;
   point.host = a;

@@ -11,7 +11,7 @@ class EdgeLock : public ::testing::Test {
  protected:
   EdgeLock() {
     view_.initialised = true;
-    view_.keyframe_poses = {{rotationExp({0.02, -0.03, 0.1}), {0.2, -0.1, 0.05}}};
+    view_.keyframes = {{0, {rotationExp({0.02, -0.03, 0.1}), {0.2, -0.1, 0.05}}, nullptr}};
     const Eigen::Vector3d in_camera = 3.0 * bearing(camera_, pixel_.cast<double>());
     view_.points = {viewPoint(view_, 7, 0, world_T_camera_ * in_camera)};
   }

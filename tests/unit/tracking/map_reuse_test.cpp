@@ -21,8 +21,7 @@ Revisit revisit() {
   const TexturedPlane plane{SmoothTexture(51, 10, 60)};
   const auto keyframe = imagesOf(plane.render(made.camera, Pose()));
   made.view.initialised = true;
-  made.view.keyframe_poses = {Pose()};
-  made.view.keyframe_images = {keyframe};
+  made.view.keyframes = {{0, Pose(), keyframe}};
   const cv::Mat& grey = keyframe->pyramid.levels[0];
   PointId id = 0;
   for (const ChosenPoint& chosen : choosePoints(grey, detectEdges(grey, EdgeOptions()), {}, PointChoiceOptions())) {

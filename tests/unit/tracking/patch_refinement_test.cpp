@@ -54,7 +54,7 @@ class Refinement : public ::testing::Test {
  protected:
   Refinement() {
     view_.initialised = true;
-    view_.keyframe_poses = {Pose()};
+    view_.keyframes = {{0, Pose(), nullptr}};
     for (int y = 50; y <= 190; y += 14) {
       for (int x = 60; x <= 260; x += 14) {
         Track track = trackAt(static_cast<PointId>(tracks_.size()), Eigen::Vector2f(x, y));

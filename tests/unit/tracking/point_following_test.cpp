@@ -11,7 +11,7 @@ namespace {
 TEST(PointFollowing, PredictsWhereAMapPointIsSeenNext) {
   const Camera camera = smallCamera();
   MapView view;
-  view.keyframe_poses = {Pose()};
+  view.keyframes = {{0, Pose(), nullptr}};
   const Pose last{rotationExp({0.01, 0.02, 0}), {0.1, 0, 0}}, next{rotationExp({0, -0.03, 0.02}), {0.25, -0.05, 0.1}};
   std::vector<Track> tracks;
   std::vector<Eigen::Vector2f> expected;
@@ -30,7 +30,7 @@ TEST(PointFollowing, PredictsWhereAMapPointIsSeenNext) {
 TEST(PointFollowing, PredictsThePointsMotionNotItsPlace) {
   const Camera camera = smallCamera();
   MapView view;
-  view.keyframe_poses = {Pose()};
+  view.keyframes = {{0, Pose(), nullptr}};
   view.points = {viewPoint(view, 0, 0, {0.1, 0.1, 2})};
   const Eigen::Vector2f seen = project(camera, {0.1, 0.1, 2}).cast<float>() + Eigen::Vector2f(3, -2);
   EXPECT_LT((predictPixels(camera, {trackAt(0, seen)}, view, Pose(), Pose(), 1.0)[0] - seen).norm(), 1e-3f);
@@ -39,7 +39,7 @@ TEST(PointFollowing, PredictsThePointsMotionNotItsPlace) {
 TEST(PointFollowing, PredictsATrackWithoutDepthAtTheScenesDepth) {
   const Camera camera = smallCamera();
   MapView view;
-  view.keyframe_poses = {Pose()};
+  view.keyframes = {{0, Pose(), nullptr}};
   const Eigen::Vector3d point = 3.5 * Eigen::Vector3d(0.1, -0.2, 1).normalized();
   const Pose next{Eigen::Quaterniond::Identity(), {0.2, 0, 0}};
   const std::vector<Track> tracks{trackAt(3, project(camera, point).cast<float>())};
@@ -51,7 +51,7 @@ TEST(PointFollowing, PredictsATrackWithoutDepthAtTheScenesDepth) {
 TEST(PointFollowing, APointThatWouldBeBehindTheCameraIsPredictedWhereItIs) {
   const Camera camera = smallCamera();
   MapView view;
-  view.keyframe_poses = {Pose()};
+  view.keyframes = {{0, Pose(), nullptr}};
   const Eigen::Vector2f pixel(100, 80);
   const Pose beyond{Eigen::Quaterniond::Identity(), {0, 0, 5}};
   EXPECT_EQ(predictPixels(camera, {trackAt(0, pixel)}, view, Pose(), beyond, 2.0)[0], pixel);
@@ -59,7 +59,7 @@ TEST(PointFollowing, APointThatWouldBeBehindTheCameraIsPredictedWhereItIs) {
 
 TEST(PointFollowing, MedianDepthIsOfTheMapPointsAmongTheTracks) {
   MapView view;
-  view.keyframe_poses = {Pose()};
+  view.keyframes = {{0, Pose(), nullptr}};
   for (int i = 0; i < 5; ++i) view.points.push_back(viewPoint(view, i, 0, {0, 0, 1.0 + i}));
   std::vector<Track> tracks;
   for (const PointId id : {4, 9, 0, 1}) tracks.push_back(trackAt(id, {50, 50}));

@@ -13,7 +13,7 @@ class PoseEstimation : public ::testing::Test {
  protected:
   PoseEstimation() {
     view_.initialised = true;
-    view_.keyframe_poses = {Pose(), {rotationExp({0.02, -0.05, 0.01}), {0.3, 0, 0.1}}};
+    view_.keyframes = {{0, Pose(), nullptr}, {1, {rotationExp({0.02, -0.05, 0.01}), {0.3, 0, 0.1}}, nullptr}};
     test::Random random(3);
     for (PointId id = 0; id < 120; ++id) {
       const Eigen::Vector2d pixel = test::randomPixel(random, camera_);

@@ -50,7 +50,7 @@ inline Track trackAt(PointId id, const Eigen::Vector2f& pixel, const Eigen::Vect
 
 // A map point of `view`, hosted in its keyframe `host`, at a place in the world.
 inline ViewPoint viewPoint(const MapView& view, PointId id, KeyframeId host, const Eigen::Vector3d& position) {
-  const Eigen::Vector3d in_host = view.keyframe_poses[static_cast<std::size_t>(host)].inverse() * position;
+  const Eigen::Vector3d in_host = view.keyframes[host].world_T_camera.inverse() * position;
   ViewPoint point;
   point.id = id;
   point.host = host;
