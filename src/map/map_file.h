@@ -1,0 +1,50 @@
+// The saved map: all of a map in one run of bytes, versioned and with a checksum, the same on every machine.
+//
+// Numbers are little endian: u32 u64 i32 i64, f64 (IEEE 754), flag (one byte, 0 or 1). A text and an image are a u64
+// length and so many bytes; a list is a u64 count and so many records. The layout of version 1:
+//
+//   "EDGESLAM MAP\r\n\x1a\n"   16 bytes
+//   version                    u32
+//   length of the payload      u64
+//   payload                    the sections CAMR, KEYF, PNTS: four letters, u64 length, content
+//   checksum                   u32, CRC-32 (zlib's crc32) of all bytes before it
+//
+//   CAMR   model u32 (0 pinhole with radial-tangential distortion, 1 Kannala-Brandt), width i32, height i32 [px],
+//          fx fy cx cy f64 [px], distortion 5 f64
+//   KEYF   list of keyframes, ids ascending: id i32, frame index i64, time i64 [ns], world_T_camera (rotation w x y z,
+//          translation x y z, f64), reason text (ASCII), list of observations (points ascending), has images flag;
+//          where 1: frame index i64 and time i64 [ns] of the images, pyramid levels i32, image (grey 8-bit PNG)
+//          observation: point i64, pixel x y f64, normal x y f64, sigma across and along the edge f64 [px], bearing
+//          x y z f64, corner flag, chain i32, order i32
+//   PNTS   list of points, ids ascending: id i64, host i32, bearing in the host x y z f64, inverse depth and its sigma
+//          f64, corner flag, chain's keyframe i32, chain i32, order i32, seen in (list of i32, ascending)
+//
+// What stands before the payload, and the checksum, stay as they are in every version.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "geometry/camera.h"
+#include "map/map.h"
+
+namespace edgeslam {
+
+constexpr std::uint32_t map_format_version = 1;
+
+struct SavedMap {
+  Camera camera;  // whose pixels the observations are
+  Map map;
+};
+
+// The same bytes for the same map. Of a keyframe's images only level 0 is written, without loss; images must be CV_8U.
+// What mapProblem (map/map_check.h) finds wrong is written all the same, and refused by decodeMap.
+std::string encodeMap(const SavedMap& saved);
+
+// The map of which `bytes` are the encoding, every number to the last bit and the pyramids built anew. `name` (of the
+// file) begins messages. Throws InputError where the bytes are no map, cut off, changed, of a newer version, or, though
+// the checksum is right, not a map that the program could work with.
+SavedMap decodeMap(std::string_view bytes, const std::string& name);
+
+}  // namespace edgeslam

@@ -1,0 +1,94 @@
+// Two maps are the same, numbers to the last bit and images with their borders.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "map/map_file.h"
+
+namespace edgeslam::test {
+
+inline void expectSameBits(const double* expected, const double* found, std::size_t count, const char* what) {
+  EXPECT_EQ(std::memcmp(expected, found, count * sizeof(double)), 0) << what;
+}
+
+inline cv::Mat withBorder(cv::Mat level) {
+  level.adjustROI(pyramid_border, pyramid_border, pyramid_border, pyramid_border);
+  return level;
+}
+
+inline void expectSameImages(const FrameImages& expected, const FrameImages& found) {
+  EXPECT_EQ(found.frame_index, expected.frame_index);
+  EXPECT_EQ(found.time_ns, expected.time_ns);
+  ASSERT_EQ(found.pyramid.levels.size(), expected.pyramid.levels.size());
+  for (std::size_t i = 0; i < expected.pyramid.levels.size(); ++i) {
+    const cv::Mat a = withBorder(expected.pyramid.levels[i]), b = withBorder(found.pyramid.levels[i]);
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_EQ(cv::countNonZero(a != b), 0) << "level " << i;
+  }
+}
+
+inline void expectSameObservation(const PointObservation& expected, const PointObservation& found) {
+  EXPECT_EQ(found.point, expected.point);
+  expectSameBits(expected.measurement.pixel.data(), found.measurement.pixel.data(), 2, "pixel");
+  expectSameBits(expected.measurement.normal.data(), found.measurement.normal.data(), 2, "normal");
+  expectSameBits(&expected.measurement.sigma_normal, &found.measurement.sigma_normal, 1, "sigma across");
+  expectSameBits(&expected.measurement.sigma_tangent, &found.measurement.sigma_tangent, 1, "sigma along");
+  expectSameBits(expected.bearing.data(), found.bearing.data(), 3, "bearing");
+  EXPECT_EQ(found.corner, expected.corner);
+  EXPECT_EQ(found.chain, expected.chain);
+  EXPECT_EQ(found.order, expected.order);
+}
+
+inline void expectSameKeyframe(const Keyframe& expected, const Keyframe& found) {
+  EXPECT_EQ(found.id, expected.id);
+  EXPECT_EQ(found.frame_index, expected.frame_index);
+  EXPECT_EQ(found.time_ns, expected.time_ns);
+  EXPECT_EQ(found.reason, expected.reason);
+  const Pose &pose = expected.world_T_camera, &found_pose = found.world_T_camera;
+  expectSameBits(pose.rotation.coeffs().data(), found_pose.rotation.coeffs().data(), 4, "rotation");
+  expectSameBits(pose.translation.data(), found_pose.translation.data(), 3, "translation");
+  ASSERT_EQ(found.observations.size(), expected.observations.size());
+  for (std::size_t i = 0; i < expected.observations.size(); ++i) {
+    expectSameObservation(expected.observations[i], found.observations[i]);
+  }
+  ASSERT_EQ(found.images != nullptr, expected.images != nullptr);
+  if (expected.images) expectSameImages(*expected.images, *found.images);
+}
+
+inline void expectSamePoint(const MapPoint& expected, const MapPoint& found) {
+  EXPECT_EQ(found.id, expected.id);
+  EXPECT_EQ(found.host, expected.host);
+  expectSameBits(expected.host_bearing.data(), found.host_bearing.data(), 3, "host bearing");
+  expectSameBits(&expected.inverse_depth, &found.inverse_depth, 1, "inverse depth");
+  expectSameBits(&expected.inverse_depth_sigma, &found.inverse_depth_sigma, 1, "its sigma");
+  EXPECT_EQ(found.corner, expected.corner);
+  EXPECT_EQ(found.chain_keyframe, expected.chain_keyframe);
+  EXPECT_EQ(found.chain, expected.chain);
+  EXPECT_EQ(found.order, expected.order);
+  EXPECT_EQ(found.seen_in, expected.seen_in);
+}
+
+inline void expectSame(const SavedMap& expected, const SavedMap& found) {
+  EXPECT_EQ(found.camera.model, expected.camera.model);
+  EXPECT_EQ(found.camera.width, expected.camera.width);
+  EXPECT_EQ(found.camera.height, expected.camera.height);
+  expectSameBits(&expected.camera.fx, &found.camera.fx, 1, "fx");
+  expectSameBits(&expected.camera.fy, &found.camera.fy, 1, "fy");
+  expectSameBits(&expected.camera.cx, &found.camera.cx, 1, "cx");
+  expectSameBits(&expected.camera.cy, &found.camera.cy, 1, "cy");
+  expectSameBits(expected.camera.distortion.data(), found.camera.distortion.data(), 5, "distortion");
+  ASSERT_EQ(found.map.keyframes.size(), expected.map.keyframes.size());
+  for (const Keyframe& keyframe : expected.map.keyframes) {
+    ASSERT_TRUE(found.map.keyframes.contains(keyframe.id));
+    expectSameKeyframe(keyframe, found.map.keyframes[keyframe.id]);
+  }
+  ASSERT_EQ(found.map.points.size(), expected.map.points.size());
+  for (const auto& [id, point] : expected.map.points) {
+    ASSERT_EQ(found.map.points.count(id), 1U);
+    expectSamePoint(point, found.map.points.at(id));
+  }
+}
+
+}  // namespace edgeslam::test
