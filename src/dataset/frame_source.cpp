@@ -6,6 +6,7 @@
 
 #include "dataset/calibration_file.h"
 #include "dataset/folder_source.h"
+#include "dataset/recording_source.h"
 #include "dataset/video_source.h"
 
 namespace edgeslam {
@@ -76,6 +77,7 @@ fs::path findEurocCamera(const fs::path& folder) {
 }
 
 std::unique_ptr<FrameSource> openFolder(const fs::path& folder) {
+  if (isRecording(folder.string())) return std::make_unique<RecordingSource>(readRecording(folder.string()));
   if (isFile(folder / "rgb.txt")) {
     return makeFolderSource("TUM RGB-D folder", readTumImageList((folder / "rgb.txt").string()),
                             findCompanions({folder}));
@@ -111,10 +113,10 @@ std::unique_ptr<FrameSource> openFolder(const fs::path& folder) {
   if (std::any_of(names.begin(), names.end(), isImageFileName)) {
     return makeFolderSource("folder of images", imagesNamedByTime(folder.string()), findCompanions({folder}));
   }
-  throw InputError(
-      folder.string() + (fs::is_empty(folder) ? ": is an empty folder" : ": holds no frames") +
-      "; expected rgb.txt (TUM RGB-D), associations.txt (ICL-NUIM), mav0/cam0 (EuRoC), a video, or images " +
-      "named by their time stamps");
+  throw InputError(folder.string() + (fs::is_empty(folder) ? ": is an empty folder" : ": holds no frames") +
+                   "; expected recording.txt (a recording), rgb.txt (TUM RGB-D), associations.txt (ICL-NUIM), "
+                   "mav0/cam0 (EuRoC), a video, or images " +
+                   "named by their time stamps");
 }
 
 }  // namespace

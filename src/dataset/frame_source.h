@@ -1,5 +1,6 @@
 // Frames from a folder or a video, one at a time: TUM RGB-D and ICL-NUIM folders (rgb.txt), EuRoC folders (mav0/cam0 or
-// cam0), folders with a video and times.txt, plain folders of images with time stamps, video files.
+// cam0), folders with a video and times.txt, plain folders of images with time stamps, video files, recordings of the
+// flight recorder.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 namespace edgeslam {
 
 struct Frame {
-  std::int64_t index = 0;  // in the source, counted from 0, unreadable ones included
+  std::int64_t index = 0;  // in the source, counted from 0, unreadable ones and those a live run dropped included
   std::int64_t time_ns = 0;
   cv::Mat grey;         // CV_8U, the camera's size; empty where the frame could not be read
   std::string problem;  // why it could not be read; empty otherwise
