@@ -16,7 +16,7 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
   EdgeOptions& edges = settings.tracking.edges;
   BlurGateOptions& blur_gate = settings.tracking.blur_gate;
   PointChoiceOptions& points = settings.tracking.points;
-  PoseOptions& pose = settings.tracking.pose;
+  FramePoseOptions& pose = settings.tracking.pose;
   FlowOptions& flow = settings.tracking.flow;
   RefinementOptions& refinement = settings.tracking.refinement;
   EdgeLockOptions& edge_lock = settings.tracking.edge_lock;
@@ -29,6 +29,7 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
   NewPointOptions& new_points = settings.mapping.new_points;
   LocalAdjustmentOptions& adjustment = settings.mapping.local_adjustment;
   BundleOptions& bundle = settings.mapping.local_adjustment.bundle;
+  CullingOptions& culling = settings.mapping.culling;
   return {
       heading("edges", "Edges: zero crossings of a difference of Gaussians, joined into chains"),
       {"edges.sigma", &edges.sigma, "px", 0.3, 10, "standard deviation of the narrower Gaussian"},
@@ -71,6 +72,10 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"pose.huber", &pose.huber, "sigma", 0.1, 100, "from here on the error of a measurement counts linearly"},
       {"pose.outlier", &pose.outlier, "sigma", 0.1, 100, "from here on a measurement is an outlier"},
       {"pose.fewest", &pose.fewest, "points", 4, 1000, "with fewer measurements or inliers there is no pose"},
+      {"pose.unmapped_depth_sigma", &pose.unmapped_depth_sigma, "", 0, 10,
+       "of the depth guessed for a track that has none, share of it; 0: such tracks do not help"},
+      {"pose.unmapped_weakening", &pose.unmapped_weakening, "", 1, 100,
+       "the standard deviations of what such tracks measure count so many times"},
 
       heading("flow", "Flow: bidirectional pyramidal Lucas-Kanade, and the correspondence filters"),
       {"flow.window", &flow.window, "px", 5, 15, "side of the patch", 2},
@@ -173,6 +178,16 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"adjustment.outlier", &adjustment.outlier, "sigma", 0.1, 100, "observations with a larger error are taken out"},
       {"adjustment.largest_depth_sigma", &adjustment.largest_depth_sigma, "", 0.01, 10,
        "points whose depth is known worse than this share are taken out"},
+
+      heading("culling", "Keyframes that add nothing are taken out; the map stays within its bounds"),
+      {"culling.enabled", &culling.enabled, "", 0, 0, "off only to measure what it costs"},
+      {"culling.recent_keyframes", &culling.recent_keyframes, "keyframes", 3, 1000, "the latest so many stay"},
+      {"culling.other_views", &culling.other_views, "keyframes", 1, 100,
+       "a point that so many others see does not need a keyframe ..."},
+      {"culling.redundant_share", &culling.redundant_share, "", 0.1, 1,
+       "... and a keyframe that this share of its points does not need is taken out"},
+      {"culling.most_keyframes", &culling.most_keyframes, "keyframes", 20, 100000, "most that the map keeps"},
+      {"culling.most_megabytes", &culling.most_megabytes, "MB", 10, 1000000, "most memory that the map takes"},
 
       heading("pipeline", "Schedule"),
       {"pipeline.view_delay_frames", &settings.view_delay_frames, "frames", 1, 100,

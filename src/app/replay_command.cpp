@@ -16,6 +16,7 @@
 #include "dataset/evaluation.h"
 #include "dataset/frame_source.h"
 #include "dataset/run_files.h"
+#include "dataset/saved_map.h"
 #include "pipeline/lockstep_run.h"
 
 namespace edgeslam {
@@ -25,6 +26,7 @@ struct ReplayArguments {
   std::string input;
   std::string configuration;
   std::string output = "result";
+  std::string map_in, map_out;
   int drawings = 12;
 };
 
@@ -88,13 +90,17 @@ RunDescription describe(const ReplayArguments& arguments, const Configuration& c
   description.configuration = formatConfiguration(configuration);
   description.command_line = "edgeslam replay " + arguments.input +
                              (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
-                             " --output " + arguments.output;
+                             (arguments.map_in.empty() ? "" : " --map-in " + arguments.map_in) +
+                             (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) + " --output " +
+                             arguments.output;
   return description;
 }
 
-RunResult runAll(FrameSource& source, const Camera& camera, const Settings& settings, int drawings) {
+RunResult runAll(FrameSource& source, const Camera& camera, const Settings& settings,
+                 const ReplayArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  LockstepRun run(camera, settings, source.size(), drawings);
+  LockstepRun run(camera, settings, source.size(), arguments.drawings);
+  if (!arguments.map_in.empty()) run.goOnWith(loadMap(arguments.map_in, camera));
   Progress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
@@ -114,6 +120,13 @@ RunResult runAll(FrameSource& source, const Camera& camera, const Settings& sett
     progress.show(record, count, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
   }
   progress.end();
+  if (!arguments.map_out.empty()) {
+    if (run.map().points.empty()) {
+      std::cerr << "edgeslam: " << arguments.map_out << " is not written: no map came to stand\n";
+    } else {
+      saveMap(arguments.map_out, camera, run.map());
+    }
+  }
   RunResult result = run.finish();
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
@@ -182,7 +195,8 @@ int runReplay(const ReplayArguments& arguments) {
   if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
 
   requireWritable(arguments.output);
-  const RunResult result = runAll(*source, camera, configuration.settings, arguments.drawings);
+  if (!arguments.map_out.empty()) requireWritable(std::filesystem::absolute(arguments.map_out).parent_path().string());
+  const RunResult result = runAll(*source, camera, configuration.settings, arguments);
   if (result.unreadable_frames == static_cast<std::int64_t>(result.frames.size())) {
     throw InputError(arguments.input + ": not one frame could be read");
   }
@@ -204,6 +218,9 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--config", arguments->configuration, "Configuration file (YAML); without it the defaults");
   command->add_option("--output", arguments->output, "Folder for the results")->capture_default_str();
+  command->add_option("--map-in", arguments->map_in,
+                      "Saved map of the same camera: its frames are looked for in it, and it is gone on with");
+  command->add_option("--map-out", arguments->map_out, "File to save the map to at the end");
   command->add_option("--drawings", arguments->drawings, "Frames drawn with edges and tracks in the report")
       ->capture_default_str()
       ->check(CLI::Range(0, 200));

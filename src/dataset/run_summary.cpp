@@ -56,6 +56,12 @@ std::optional<AbsoluteError> errorIfComparable(const Trajectory& estimate, const
   }
 }
 
+Trajectory trajectoryOf(const std::vector<TimedPose>& poses) {
+  Trajectory trajectory;
+  for (const TimedPose& pose : poses) trajectory.push_back({pose.time_ns, pose.world_T_camera});
+  return trajectory;
+}
+
 ordered_json errorJson(const std::optional<AbsoluteError>& error) {
   if (!error) return nullptr;
   return {{"pairs", error->pairs},
@@ -133,6 +139,10 @@ RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& g
     summary.errors.trajectory = errorIfComparable(finalTrajectory(result), *ground_truth);
     summary.errors.live = errorIfComparable(liveTrajectory(result), *ground_truth);
     summary.errors.keyframes = errorIfComparable(keyframeTrajectory(result), *ground_truth);
+    for (const ClosedLoop& loop : result.closed_loops) {
+      summary.loops.push_back({errorIfComparable(trajectoryOf(loop.before), *ground_truth),
+                               errorIfComparable(trajectoryOf(loop.after), *ground_truth)});
+    }
   }
   return summary;
 }
@@ -147,6 +157,14 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
                           {"p50", stage.median},
                           {"p99", stage.percentile_99},
                           {"max", stage.max}};
+  }
+  ordered_json loops = ordered_json::array();
+  for (std::size_t i = 0; i < result.closed_loops.size(); ++i) {
+    const ClosedLoop& loop = result.closed_loops[i];
+    loops.push_back({{"frame", loop.frame_index}, {"keyframe", loop.keyframe}, {"how", loop.how}});
+    if (i >= summary.loops.size()) continue;
+    loops.back()["keyframe_error_before"] = errorJson(summary.loops[i].before);
+    loops.back()["keyframe_error_after"] = errorJson(summary.loops[i].after);
   }
   ordered_json errors;
   if (summary.has_ground_truth) {
@@ -172,7 +190,8 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
           {"initialisation", result.initialisation},
           {"recoveries", result.recoveries},
           {"relocalisations", result.relocalisations},
-          {"loops", result.loops},
+          {"loops", result.closed_loops.size()},
+          {"closed_loops", loops},
           {"events", result.events},
           {"absolute_trajectory_error", errors},
           {"stage_times_ms", stages},

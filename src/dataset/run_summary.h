@@ -30,6 +30,11 @@ struct RunErrors {
   std::optional<AbsoluteError> keyframes;
 };
 
+// Of the keyframes up to a closed loop, before and after it; none where they cannot be compared.
+struct LoopErrors {
+  std::optional<AbsoluteError> before, after;
+};
+
 struct RunSummary {
   std::int64_t frames = 0;
   std::int64_t unreadable_frames = 0;
@@ -45,6 +50,7 @@ struct RunSummary {
   std::vector<StageTimes> stages;  // by name; "total" (their sum in each frame) last
   bool has_ground_truth = false;
   RunErrors errors;
+  std::vector<LoopErrors> loops;  // by closed loop
 };
 
 // Every frame with a final pose, every frame with a good live pose, every keyframe.

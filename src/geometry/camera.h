@@ -18,6 +18,11 @@ struct Camera {
   std::array<double, 5> distortion{0, 0, 0, 0, 0};  // radial-tangential: k1 k2 p1 p2 k3; Kannala-Brandt: k1 k2 k3 k4 0
 };
 
+inline bool operator==(const Camera& a, const Camera& b) {
+  return a.model == b.model && a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy &&
+         a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion;
+}
+
 // Pixel of a point in the camera frame. The 2x3 derivative d pixel / d point is written where `jacobian` is given.
 // Valid for points in front of the camera (z > 0 for the pinhole model); the caller checks that.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point,

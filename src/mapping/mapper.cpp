@@ -4,6 +4,15 @@
 
 namespace edgeslam {
 
+void Mapper::goOnWith(Map map) {
+  map_ = std::move(map);
+  description_ = "a saved map";
+  initialised_ = true;
+  last_global_ = last_meeting_ = map_.keyframes.back().id;
+  last_global_ns_ = map_.keyframes.back().time_ns;
+  ++version_;
+}
+
 std::optional<MapView> Mapper::add(const TrackedFrame& frame) {
   if (frame.keyframe == 0) {  // a start, or a new one
     initialised_ = false;
@@ -28,7 +37,9 @@ std::optional<MapView> Mapper::add(const TrackedFrame& frame) {
   if (initialisation_.add(frame)) {
     initialised_ = true;
     map_ = initialisation_.map();
+    description_ = initialisation_.description();
     early_poses_ = initialisation_.earlyPoses();
+    last_global_ns_ = map_.keyframes.front().time_ns;
   } else if (!initialisation_.changed() && initialisation_.waitingFor() == waited_for) {
     return std::nullopt;
   }
@@ -49,6 +60,8 @@ void Mapper::addKeyframe(const TrackedFrame& frame) {
   associate(map_, candidates_);
   addNewPoints(camera_, options_.new_points, map_, candidates_);
   adjustLocally(camera_, options_.local_adjustment, map_);
+  const std::vector<CulledKeyframe> culled = cullKeyframes(options_.culling, map_, candidates_);
+  culled_.insert(culled_.end(), culled.begin(), culled.end());
   ++version_;
 }
 
@@ -98,11 +111,13 @@ bool Mapper::metOldMap() {
 bool Mapper::adjustAll(bool at_once) {
   if (!initialised_) return false;
   const Keyframe& latest = map_.keyframes.back();
-  const Keyframe& last = map_.keyframes[last_global_];
-  const bool due = latest.id - last.id >= options_.global_interval_keyframes ||
-                   static_cast<double>(latest.time_ns - last.time_ns) * 1e-9 >= options_.global_interval_s;
+  // A saved map's times may be of another clock.
+  if (latest.time_ns < last_global_ns_) last_global_ns_ = latest.time_ns;
+  const bool due = latest.id - last_global_ >= options_.global_interval_keyframes ||
+                   static_cast<double>(latest.time_ns - last_global_ns_) * 1e-9 >= options_.global_interval_s;
   if (!due && !at_once) return false;
   last_global_ = latest.id;
+  last_global_ns_ = latest.time_ns;
   GlobalAdjustmentOptions adjustment = options_.global_adjustment;
   if (at_once) adjustment.bundle.iterations = options_.iterations_after_loop;
   if (!adjustGlobally(camera_, adjustment, options_.local_adjustment, map_)) return false;

@@ -3,8 +3,10 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "mapping/culling.h"
 #include "mapping/global_adjustment.h"
 #include "mapping/initialisation.h"
 #include "mapping/local_adjustment.h"
@@ -18,6 +20,7 @@ struct MapperOptions {
   InitialisationOptions initialisation;
   NewPointOptions new_points;
   LocalAdjustmentOptions local_adjustment;
+  CullingOptions culling;
   GlobalAdjustmentOptions global_adjustment;
   int old_keyframes = 20;          // a part of the map is old so many keyframes after it was left ...
   int old_points = 20;             // ... and met again with so many of its points
@@ -33,6 +36,9 @@ class Mapper {
  public:
   Mapper(const Camera& camera, const MapperOptions& options)
       : camera_(camera), options_(options), initialisation_(camera, options.initialisation) {}
+
+  // Before the first frame: goes on with a map made earlier, of the same camera.
+  void goOnWith(Map map);
 
   // Takes over a frame. Returns a new view of the map where it changed.
   std::optional<MapView> add(const TrackedFrame& frame);
@@ -51,12 +57,15 @@ class Mapper {
     apply(map_);
     ++version_;
   }
+  // Keyframes taken out of the map since this was last asked, in that order.
+  std::vector<CulledKeyframe> takeCulled() { return std::exchange(culled_, {}); }
   // The map as tracking gets to see it; `centre` -1: around the latest keyframe.
   MapView view(KeyframeId centre = -1) const;
 
   bool initialised() const { return initialised_; }
   const Map& map() const { return map_; }
-  const std::string& initialisationDescription() const { return initialisation_.description(); }
+  // How the map came to be, in words.
+  const std::string& initialisationDescription() const { return description_; }
   // Poses of the frames before the map stood: (frame index, world_T_camera with keyframe 0 as it is now).
   std::vector<std::pair<std::int64_t, Pose>> earlyPoses() const;
 
@@ -68,11 +77,14 @@ class Mapper {
   Initialisation initialisation_;
   Map map_;
   Candidates candidates_;
+  std::string description_;
   bool initialised_ = false;
   std::uint64_t version_ = 0;
   std::int64_t origin_frame_ = -1;
-  KeyframeId last_meeting_ = -1;                            // latest keyframe that met an old part of the map
-  KeyframeId last_global_ = 0;                              // latest keyframe at the last global adjustment
+  KeyframeId last_meeting_ = -1;     // latest keyframe that met an old part of the map
+  KeyframeId last_global_ = 0;       // latest keyframe at the last global adjustment ...
+  std::int64_t last_global_ns_ = 0;  // ... and its time
+  std::vector<CulledKeyframe> culled_;
   std::vector<std::pair<std::int64_t, Pose>> early_poses_;  // keyframe0_T_camera
 };
 

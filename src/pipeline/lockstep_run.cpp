@@ -27,6 +27,20 @@ double millisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+PointId largestPoint(const Map& map) {
+  PointId largest = -1;
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (!keyframe.observations.empty()) largest = std::max(largest, keyframe.observations.back().point);
+  }
+  return largest;
+}
+
+std::vector<TimedPose> keyframePath(const Map& map) {
+  std::vector<TimedPose> path;
+  for (const Keyframe& keyframe : map.keyframes) path.push_back({keyframe.time_ns, keyframe.world_T_camera});
+  return path;
+}
+
 }  // namespace
 
 LockstepRun::LockstepRun(const Camera& camera, const Settings& settings, std::int64_t expected_frames, int drawings)
@@ -41,6 +55,14 @@ LockstepRun::LockstepRun(const Camera& camera, const Settings& settings, std::in
   } else if (expected_frames > 0) {
     drawing_interval_ = std::max<std::int64_t>(1, expected_frames / drawings);
   }
+}
+
+void LockstepRun::goOnWith(Map map) {
+  const PointId first_free_point = largestPoint(map) + 1;
+  first_keyframe_ = map.keyframes.back().id + 1;
+  mapper_.goOnWith(std::move(map));
+  relocalisation_.update(mapper_.map());
+  tracker_.startLost(mapper_.view(), first_free_point);
 }
 
 const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
@@ -79,6 +101,7 @@ void LockstepRun::hand(const std::vector<TrackedFrame>& frames, FrameRecord& rec
     std::optional<MapView> view = mapper_.add(frame);
     if (!view) continue;
     if (mapper_.initialised()) lookForLoop(record);
+    for (const CulledKeyframe& culled : mapper_.takeCulled()) culled_[culled.id] = culled;
     views_.push_back({processed_ + std::max(1, settings_.view_delay_frames), mapper_.view()});
   }
   record.stage_ms["mapping"] = millisecondsSince(start);
@@ -88,24 +111,27 @@ void LockstepRun::hand(const std::vector<TrackedFrame>& frames, FrameRecord& rec
 void LockstepRun::lookForLoop(FrameRecord& record) {
   const Map& map = mapper_.map();
   relocalisation_.update(map);
-  bool closed = false;
-  if (settings_.loops.enabled) {
-    const LoopOutcome outcome = loop_closing_.addKeyframe(map);
-    for (const JudgedLoop& loop : outcome.considered) {
-      tell(record, "loop of keyframe " + std::to_string(outcome.current) + " to keyframe " +
-                       std::to_string(loop.keyframe) + (loop.accepted ? " closed: " : " refused: ") + loop.reason);
-    }
-    if (outcome.correction) {
-      mapper_.correct([&](Map& corrected) { applyCorrection(*outcome.correction, corrected); });
-      ++result_.loops;
-      closed = true;
-    }
+  if (!settings_.loops.enabled) {
+    mapper_.adjustAll(false);
+    return;
   }
-  if (mapper_.metOldMap()) {
+  ClosedLoop loop{record.index, map.keyframes.back().id, "", keyframePath(map), {}};
+  const LoopOutcome outcome = loop_closing_.addKeyframe(map);
+  for (const JudgedLoop& judged : outcome.considered) {
+    tell(record, "loop of keyframe " + std::to_string(outcome.current) + " to keyframe " +
+                     std::to_string(judged.keyframe) + (judged.accepted ? " closed: " : " refused: ") + judged.reason);
+  }
+  if (outcome.correction) {
+    mapper_.correct([&](Map& corrected) { applyCorrection(*outcome.correction, corrected); });
+    loop.how = "by its looks";
+  } else if (mapper_.metOldMap()) {
     tell(record, "an old part of the map is met again by its points");
-    closed = true;
+    loop.how = "by its points";
   }
-  mapper_.adjustAll(closed);
+  mapper_.adjustAll(!loop.how.empty());
+  if (loop.how.empty()) return;
+  loop.after = keyframePath(map);
+  result_.closed_loops.push_back(std::move(loop));
 }
 
 // The frame's pose is lost: recovery by its tracks (P21), then the map as a whole (P22).
@@ -113,7 +139,7 @@ void LockstepRun::findAgain(FrameRecord& record) {
   if (!tracker_.hasLostFrame() || !mapper_.initialised()) return;
   const auto start = std::chrono::steady_clock::now();
   const auto next_keyframe = mapper_.map().keyframes.back().id + 1;
-  if (lost_frames_ <= 10) {
+  if (last_good_pose_ && lost_frames_ <= 10) {
     const RecoveryResult recovery = mapper_.recover(tracker_.lostFrame(next_keyframe));
     if (recovery.found) {
       ++result_.recoveries;
@@ -125,8 +151,9 @@ void LockstepRun::findAgain(FrameRecord& record) {
   if (record.state == TrackingState::lost && settings_.relocalisation_enabled &&
       lost_frames_ % std::max(1, settings_.relocalisation_interval) == 0) {
     // What looks like a place out of reach is another place that looks the same.
+    std::optional<Reachable> reachable;
     const double seconds = static_cast<double>(record.time_ns - last_good_ns_) * 1e-9;
-    const Reachable reachable = reachableFrom(mapper_.map(), last_good_pose_, seconds);
+    if (last_good_pose_) reachable = reachableFrom(mapper_.map(), *last_good_pose_, seconds);
     const RelocalisationResult found =
         relocalisation_.relocalise(mapper_.map(), tracker_.lostImages(), tracker_.lostEdges(), reachable);
     if (found.found) {
@@ -197,14 +224,27 @@ void LockstepRun::draw(const cv::Mat& grey, const FrameRecord& record) {
   result_.drawings.push_back({record.index, drawFrame(grey, tracker_.edges(), tracks, caption)});
 }
 
+// The frame's pose is carried by its keyframe, or, where that was culled, by the one that stands for it.
+std::optional<Pose> LockstepRun::finalPose(KeyframeId reference, Pose reference_T_camera) const {
+  const Map& map = mapper_.map();
+  while (!map.keyframes.contains(reference)) {
+    const auto culled = culled_.find(reference);
+    if (culled == culled_.end()) return std::nullopt;
+    reference_T_camera = culled->second.kept_T_culled * reference_T_camera;
+    reference = culled->second.kept;
+  }
+  return map.keyframes[reference].world_T_camera * reference_T_camera;
+}
+
 RunResult LockstepRun::finish() {
   if (!mapper_.initialised()) return std::move(result_);
   const Map& map = mapper_.map();
   for (std::size_t i = 0; i < result_.frames.size(); ++i) {
     const KeyframeId reference = references_[i];
-    if (reference < 0 || !map.keyframes.contains(reference)) continue;
+    const std::optional<Pose> pose = finalPose(reference, reference_T_camera_[i]);
+    if (!pose) continue;
     result_.frames[i].has_final_pose = true;
-    result_.frames[i].final_world_T_camera = map.keyframes[reference].world_T_camera * reference_T_camera_[i];
+    result_.frames[i].final_world_T_camera = *pose;
   }
   const auto frameOf = [&](std::int64_t index) {
     return std::lower_bound(result_.frames.begin(), result_.frames.end(), index,
@@ -217,10 +257,11 @@ RunResult LockstepRun::finish() {
     frame->final_world_T_camera = pose;
   }
   for (const Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id < first_keyframe_) continue;
     const auto frame = frameOf(keyframe.frame_index);
     if (frame != result_.frames.end() && frame->index == keyframe.frame_index) frame->is_keyframe = true;
   }
-  result_.keyframes = keyframeRecords(map);
+  result_.keyframes = keyframeRecords(map, first_keyframe_);
   result_.map_points = mapPointRecords(map, result_.camera);
   result_.initialisation = mapper_.initialisationDescription();
   return std::move(result_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <string>
 
 #include "mapping/mapper.h"
@@ -18,6 +19,11 @@ class LockstepRun {
  public:
   // `drawings`: about so many frames are drawn for the report, out of `expected_frames` (0: unknown, one every 100).
   LockstepRun(const Camera& camera, const Settings& settings, std::int64_t expected_frames, int drawings);
+
+  // Before the first frame: goes on with a map made earlier, of the same camera. The camera is somewhere in it.
+  void goOnWith(Map map);
+  // The map as it is now; without keyframes where none stands yet.
+  const Map& map() const { return mapper_.map(); }
 
   // The next frame, CV_8U of the camera's size. Returns its record, without the final pose.
   const FrameRecord& process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey);
@@ -41,6 +47,7 @@ class LockstepRun {
   void tell(const FrameRecord& record, const std::string& event);
   FrameRecord& record(std::int64_t index, std::int64_t time_ns, const TrackingOutcome& outcome);
   void draw(const cv::Mat& grey, const FrameRecord& record);
+  std::optional<Pose> finalPose(KeyframeId reference, Pose reference_T_camera) const;
 
   Settings settings_;
   Tracker tracker_;
@@ -48,14 +55,16 @@ class LockstepRun {
   Relocalisation relocalisation_;
   LoopClosing loop_closing_;
   int lost_frames_ = 0;  // in a row
-  Pose last_good_pose_;
+  std::optional<Pose> last_good_pose_;
   std::int64_t last_good_ns_ = 0;
+  KeyframeId first_keyframe_ = 0;  // of this run
   RunResult result_;
   std::deque<DueView> views_;
   std::int64_t processed_ = 0;
   std::int64_t drawing_interval_ = 100;
   std::vector<KeyframeId> references_;  // by frame record: the keyframe that carries its pose, or -1
   std::vector<Pose> reference_T_camera_;
+  std::map<KeyframeId, CulledKeyframe> culled_;
 };
 
 }  // namespace edgeslam

@@ -26,9 +26,10 @@ void writeDirections(std::vector<MapPointRecord>& records) {
 
 }  // namespace
 
-std::vector<KeyframeRecord> keyframeRecords(const Map& map) {
+std::vector<KeyframeRecord> keyframeRecords(const Map& map, KeyframeId first) {
   std::vector<KeyframeRecord> records;
   for (const Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id < first) continue;
     KeyframeRecord record;
     record.id = keyframe.id;
     record.frame_index = keyframe.frame_index;

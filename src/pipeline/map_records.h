@@ -7,7 +7,8 @@
 
 namespace edgeslam {
 
-std::vector<KeyframeRecord> keyframeRecords(const Map& map);
+// Those from `first` on; earlier ones are of the run that made a saved map.
+std::vector<KeyframeRecord> keyframeRecords(const Map& map, KeyframeId first = 0);
 
 // Chain numbers are made unique over the map (a chain belongs to one host keyframe).
 std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera);

@@ -71,6 +71,19 @@ struct DrawnFrame {
   cv::Mat image;  // CV_8UC3 (BGR)
 };
 
+struct TimedPose {
+  std::int64_t time_ns = 0;
+  Pose world_T_camera;
+};
+
+// A place that was met again, and the keyframes before and after the drift was shared out.
+struct ClosedLoop {
+  std::int64_t frame_index = 0;
+  int keyframe = -1;  // that met it
+  std::string how;    // "by its looks" (P23 to P27), "by its points" (map reuse)
+  std::vector<TimedPose> before, after;
+};
+
 struct RunResult {
   Camera camera;
   std::vector<FrameRecord> frames;
@@ -80,8 +93,8 @@ struct RunResult {
   std::vector<std::string> events;  // recoveries, relocalisations, loops accepted and refused: "frame 120: ..."
   int recoveries = 0;               // P21
   int relocalisations = 0;          // P22
-  int loops = 0;                    // closed
-  std::string initialisation;       // how the map was started: method, pair, quality factor
+  std::vector<ClosedLoop> closed_loops;
+  std::string initialisation;  // how the map was started: method, pair, quality factor
   std::int64_t unreadable_frames = 0;
   double wall_s = 0;  // of the whole run
 };

@@ -1,5 +1,7 @@
 #include "tracking/pose_estimation.h"
 
+#include <algorithm>
+
 #include "geometry/resectioning.h"
 
 namespace edgeslam {
@@ -27,10 +29,45 @@ PoseObservation observationOf(const Camera& camera, const MapView& view, const V
   return observation;
 }
 
+// Of the mapped tracks; 0 where there are none.
+double medianInverseDepth(const MapView& view, const std::vector<Track>& tracks, const Pose& camera_T_world) {
+  std::vector<double> values;
+  for (const Track& track : tracks) {
+    if (const ViewPoint* point = findPoint(view, track.id)) {
+      values.push_back(1 / (camera_T_world * worldPosition(view, *point)).norm());
+    }
+  }
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Tracks that have no depth yet: with one that is little more than a guess, what they measure is where they are across
+// the epipolar line of their keyframe.
+void addUnmapped(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
+                 const Pose& camera_T_world, const FramePoseOptions& options,
+                 std::vector<PoseObservation>& observations) {
+  const double inverse_depth = medianInverseDepth(view, tracks, camera_T_world);
+  if (inverse_depth <= 0) return;
+  for (const Track& track : tracks) {
+    if (!track.keyframe_images || !view.keyframes.contains(track.keyframe) || findPoint(view, track.id)) continue;
+    ViewPoint guessed;
+    guessed.host = track.keyframe;
+    guessed.host_bearing = bearing(camera, track.keyframe_pixel.cast<double>());
+    guessed.inverse_depth = inverse_depth;
+    guessed.inverse_depth_sigma = options.unmapped_depth_sigma * inverse_depth;
+    observations.push_back(observationOf(camera, view, guessed, track, camera_T_world));
+    Measurement& measurement = observations.back().measurement;
+    measurement.sigma_normal *= options.unmapped_weakening;
+    measurement.sigma_tangent *= options.unmapped_weakening;
+  }
+}
+
 }  // namespace
 
 FramePose estimatePose(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
-                       const Pose& world_T_predicted, const PoseOptions& options) {
+                       const Pose& world_T_predicted, const FramePoseOptions& options) {
   FramePose pose;
   std::vector<PoseObservation> observations;
   observations.reserve(tracks.size());
@@ -41,7 +78,16 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
       pose.track_of_observation.push_back(static_cast<int>(i));
     }
   }
+  const std::size_t mapped = observations.size();
+  if (view.initialised && options.unmapped_depth_sigma > 0) {
+    addUnmapped(camera, view, tracks, predicted_T_world, options, observations);
+  }
   pose.result = adjustPose(camera, world_T_predicted, observations, options);
+  // What is not mapped helps the pose, but says nothing of how much of the map is found again.
+  observations.resize(mapped);
+  pose.result.inliers.resize(mapped);
+  pose.result.inlier_count = static_cast<int>(std::count(pose.result.inliers.begin(), pose.result.inliers.end(), 1));
+  if (pose.result.inlier_count < options.fewest) pose.result.converged = false;
   const bool trustworthy =
       pose.result.converged && 2 * pose.result.inlier_count >= static_cast<int>(observations.size());
   if (trustworthy || !view.initialised) return pose;

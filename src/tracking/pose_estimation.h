@@ -10,13 +10,20 @@
 
 namespace edgeslam {
 
+struct FramePoseOptions : PoseOptions {
+  double unmapped_depth_sigma = 2;  // of the depth guessed for a track without one, share of it; 0: it does not help
+  double unmapped_weakening = 3;    // their standard deviations count so many times: the map is to decide where it can
+};
+
 struct FramePose {
   PoseResult result;
   std::vector<int> track_of_observation;  // index into the tracks of each entry of result.inliers
   bool by_resectioning = false;
 };
 
+// Tracks without a map point help with what they measure across their epipolar lines; inliers and their count are of
+// the map points alone.
 FramePose estimatePose(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
-                       const Pose& world_T_predicted, const PoseOptions& options);
+                       const Pose& world_T_predicted, const FramePoseOptions& options);
 
 }  // namespace edgeslam

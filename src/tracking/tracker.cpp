@@ -29,17 +29,18 @@ TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, c
   if (isBlurred(blur_gate_, sharpness(grey, frame.edges), options_.blur_gate) && last_.images) {
     const StageTimes times = outcome.times;
     outcome = skip(time_ns, "blurred image");
+    if (lost_since_ns_ < 0) lost_since_ns_ = time_ns;
     outcome.times = times;
     return outcome;
   }
-  if (!last_.images) {
+  if (!last_.images && !view_.initialised) {
     startMap(std::move(frame), outcome);
     clock.finished("choice of points");
     return outcome;
   }
 
-  const bool given_up =
-      lost_since_ns_ >= 0 && static_cast<double>(time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds;
+  const bool given_up = !last_.images || (lost_since_ns_ >= 0 && static_cast<double>(time_ns - lost_since_ns_) * 1e-9 >
+                                                                     options_.regain_seconds);
   bool located = !given_up && followAndLocate(last_, frame, clock);
   if (!view_.initialised && (!located || static_cast<double>(frame.tracks.size()) <
                                              options_.restart_share * static_cast<double>(tracks_at_start_))) {
@@ -142,9 +143,12 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
   estimate = estimatePose(camera_, view_, frame.tracks, estimate.result.world_T_camera, options_.pose);
   const auto in_view = static_cast<double>(estimate.track_of_observation.size());
   // A flat map fits a scene with depth only here and there: before the map stands no share of inliers is asked for.
-  const double fewest_inliers = !view_.initialised    ? 0.0
-                                : lost_since_ns_ >= 0 ? options_.regain_inlier_share * in_view
-                                                      : options_.least_inlier_share * in_view;
+  double fewest_inliers = 0;
+  if (view_.initialised && lost_since_ns_ < 0) fewest_inliers = options_.least_inlier_share * in_view;
+  if (view_.initialised && lost_since_ns_ >= 0) {
+    fewest_inliers =
+        std::max(options_.regain_inlier_share * in_view, options_.regain_points_share * from.pose.inlier_count);
+  }
   if (!estimate.result.converged || estimate.result.inlier_count < fewest_inliers) return false;
   frame.pose = estimate.result;
   frame.world_T_camera = estimate.result.world_T_camera;
@@ -321,6 +325,12 @@ void Tracker::resume(const MapView& view, const Pose& world_T_camera, const Matr
   frames_since_keyframe_ = options_.keyframes.least_frames_apart;
   mapped_at_keyframe_ = options_.keyframes.fewest_mapped * 2;  // asks for a keyframe with fresh points
   average_tracks_ = 0;
+}
+
+void Tracker::startLost(const MapView& view, PointId first_free_point) {
+  view_ = view;
+  next_point_ = first_free_point;
+  next_keyframe_ = view.keyframes.back().id + 1;
 }
 
 void Tracker::adopt(const MapView& view) {

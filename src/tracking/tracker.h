@@ -26,7 +26,7 @@ struct TrackerOptions {
   BlurGateOptions blur_gate;
   PointChoiceOptions points;
   FlowOptions flow;
-  PoseOptions pose;
+  FramePoseOptions pose;
   RefinementOptions refinement;
   EdgeLockOptions edge_lock;
   SparseAlignmentOptions alignment;
@@ -35,7 +35,8 @@ struct TrackerOptions {
   int fewest_tracks = 30;            // fewer are not enough to start a map with
   double restart_share = 0.5;        // of the first frame's tracks: fewer left, and the initialisation starts anew
   int outlier_frames = 4;            // a track whose map point misses the pose so often in a row is dropped
-  double regain_inlier_share = 0.6;  // likewise of the first pose after a loss
+  double regain_inlier_share = 0.6;  // of the first pose after a loss or blur: of the map points in view ...
+  double regain_points_share = 0.3;  // ... and of those that the last good pose had
   double regain_seconds = 0.7;       // so long after a loss the last tracked frame's points are still looked for
   double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed
 };
@@ -66,6 +67,10 @@ class Tracker {
  public:
   Tracker(const Camera& camera, const TrackerOptions& options)
       : camera_(camera), options_(options), rotation_grids_(makeRotationGrids(camera)) {}
+
+  // Before the first frame: a map is there already, and the camera somewhere in it, not known where. Frames are lost
+  // until one of them is found in it. New points are numbered from `first_free_point` on.
+  void startLost(const MapView& view, PointId first_free_point);
 
   // Takes over a newer view of the map, between two frames.
   void adopt(const MapView& view);

@@ -56,7 +56,7 @@ Start run(
       track.sigma_tangent = static_cast<float>(observation.measurement.sigma_tangent);
       tracks.push_back(track);
     }
-    const FramePose pose = estimatePose(camera, view, tracks, last, PoseOptions());
+    const FramePose pose = estimatePose(camera, view, tracks, last, FramePoseOptions());
     last = frame.world_T_camera = pose.result.world_T_camera;
     if (start.initialisation.add(frame)) {
       start.accepted_at = i;

@@ -19,7 +19,7 @@ KeyframeEvidence calm() {
   evidence.average_tracks = 520;
   evidence.mapped = 400;
   evidence.mapped_at_keyframe = 450;
-  evidence.seconds = 0.5;
+  evidence.seconds = 0.25;
   evidence.frames = 15;
   return evidence;
 }
@@ -40,7 +40,7 @@ std::vector<Criterion> criteria() {
       {"few map points", KeyframeChoice::previous_frame, [](E& e) { e.mapped = 250; }, [](E& e) { e.mapped = 249; }},
       {"displacement", KeyframeChoice::current_frame, [](E& e) { e.mean_displacement_px = 127.9; },
        [](E& e) { e.mean_displacement_px = 128.1; }},
-      {"interval", KeyframeChoice::current_frame, [](E& e) { e.seconds = 0.99; }, [](E& e) { e.seconds = 1.0; }}};
+      {"interval", KeyframeChoice::current_frame, [](E& e) { e.seconds = 0.49; }, [](E& e) { e.seconds = 0.5; }}};
 }
 
 TEST(KeyframeSelection, NothingHappensWhileNoCriterionIsMet) {

@@ -47,14 +47,14 @@ class PoseEstimation : public ::testing::Test {
 TEST_F(PoseEstimation, FindsThePoseFromAPredictionNearBy) {
   test::Random random(4);
   const FramePose pose =
-      estimatePose(camera_, view_, tracks_, test::perturbed(random, truth_, 0.05, 0.03), PoseOptions());
+      estimatePose(camera_, view_, tracks_, test::perturbed(random, truth_, 0.05, 0.03), FramePoseOptions());
   expectTruth(pose);
   EXPECT_FALSE(pose.by_resectioning);
   EXPECT_EQ(pose.result.inlier_count, 90);
 }
 
 TEST_F(PoseEstimation, TellsWhichTracksHadAMapPoint) {
-  const FramePose pose = estimatePose(camera_, view_, tracks_, truth_, PoseOptions());
+  const FramePose pose = estimatePose(camera_, view_, tracks_, truth_, FramePoseOptions());
   ASSERT_EQ(pose.track_of_observation.size(), view_.points.size());
   ASSERT_EQ(pose.result.inliers.size(), view_.points.size());
   for (std::size_t i = 0; i < view_.points.size(); ++i) {
@@ -64,7 +64,7 @@ TEST_F(PoseEstimation, TellsWhichTracksHadAMapPoint) {
 
 TEST_F(PoseEstimation, OutliersAreNamed) {
   for (std::size_t i = 0; i < tracks_.size(); i += 10) tracks_[i].pixel += 30 * tracks_[i].normal;
-  const FramePose pose = estimatePose(camera_, view_, tracks_, truth_, PoseOptions());
+  const FramePose pose = estimatePose(camera_, view_, tracks_, truth_, FramePoseOptions());
   expectTruth(pose, 0.01, 0.01);
   for (std::size_t i = 0; i < pose.track_of_observation.size(); ++i) {
     EXPECT_EQ(pose.result.inliers[i] == 0, pose.track_of_observation[i] % 10 == 0) << pose.track_of_observation[i];
@@ -77,10 +77,10 @@ TEST_F(PoseEstimation, AFailingPredictionIsReplacedByResectioning) {
     if (point) track.pixel = project(camera_, truth_.inverse() * worldPosition(view_, *point)).cast<float>();
   }
   const Pose far_off{truth_.rotation * rotationExp({0, 1.2, 0}), truth_.translation + Eigen::Vector3d(2, 0, -1)};
-  const FramePose pose = estimatePose(camera_, view_, tracks_, far_off, PoseOptions());
+  const FramePose pose = estimatePose(camera_, view_, tracks_, far_off, FramePoseOptions());
   EXPECT_TRUE(pose.by_resectioning);
   expectTruth(pose);
-  const FramePose again = estimatePose(camera_, view_, tracks_, far_off, PoseOptions());
+  const FramePose again = estimatePose(camera_, view_, tracks_, far_off, FramePoseOptions());
   EXPECT_EQ(pose.result.world_T_camera.translation, again.result.world_T_camera.translation);
 }
 
@@ -88,7 +88,7 @@ TEST_F(PoseEstimation, AFailingPredictionIsReplacedByResectioning) {
 TEST_F(PoseEstimation, BeforeTheMapStandsThereIsNoResectioning) {
   view_.initialised = false;
   const Pose far_off{truth_.rotation * rotationExp({0, 1.2, 0}), truth_.translation + Eigen::Vector3d(2, 0, -1)};
-  EXPECT_FALSE(estimatePose(camera_, view_, tracks_, far_off, PoseOptions()).by_resectioning);
+  EXPECT_FALSE(estimatePose(camera_, view_, tracks_, far_off, FramePoseOptions()).by_resectioning);
 }
 
 TEST_F(PoseEstimation, AFlatViewSeenFromWhereItWasMadeGivesThatPose) {
@@ -100,7 +100,7 @@ TEST_F(PoseEstimation, AFlatViewSeenFromWhereItWasMadeGivesThatPose) {
     first.observations.push_back(observation);
   }
   const FramePose pose = estimatePose(camera_, flatView(first), tracks_,
-                                      {rotationExp({0, 0.02, 0.01}), {0.02, -0.01, 0.01}}, PoseOptions());
+                                      {rotationExp({0, 0.02, 0.01}), {0.02, -0.01, 0.01}}, FramePoseOptions());
   ASSERT_TRUE(pose.result.converged);
   EXPECT_LT(pose.result.world_T_camera.translation.norm(), 1e-3);
   EXPECT_LT(rotationAngle(pose.result.world_T_camera.rotation, Eigen::Quaterniond::Identity()), 1e-3);
@@ -112,7 +112,7 @@ TEST_F(PoseEstimation, ADepthThatIsNotKnownWeighsLessAlongItsRay) {
     view_.points[i].inverse_depth *= 1.4;
     view_.points[i].inverse_depth_sigma = 0.4 * view_.points[i].inverse_depth;
   }
-  PoseOptions options;
+  FramePoseOptions options;
   const FramePose honest = estimatePose(camera_, view_, tracks_, truth_, options);
   for (ViewPoint& point : view_.points) point.inverse_depth_sigma = 1e-6;
   const FramePose overconfident = estimatePose(camera_, view_, tracks_, truth_, options);
@@ -126,11 +126,50 @@ TEST_F(PoseEstimation, ADepthThatIsNotKnownWeighsLessAlongItsRay) {
 
 TEST_F(PoseEstimation, TooFewPointsGiveNoPose) {
   view_.points.resize(8);
-  EXPECT_FALSE(estimatePose(camera_, view_, tracks_, truth_, PoseOptions()).result.converged);
+  EXPECT_FALSE(estimatePose(camera_, view_, tracks_, truth_, FramePoseOptions()).result.converged);
   view_.points.clear();
-  const FramePose none = estimatePose(camera_, view_, tracks_, truth_, PoseOptions());
+  const FramePose none = estimatePose(camera_, view_, tracks_, truth_, FramePoseOptions());
   EXPECT_FALSE(none.result.converged);
   EXPECT_TRUE(none.track_of_observation.empty());
+}
+
+// The map's points are all on one side of the image. Tracks without depth on the other tell more of the pose.
+TEST_F(PoseEstimation, TracksWithoutDepthHelpAcrossTheirEpipolarLines) {
+  test::Random random(11);
+  FramePoseOptions without, with;
+  without.unmapped_depth_sigma = 0;
+  double error_alone = 0, error_helped = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    MapView few = view_;
+    few.points.clear();
+    for (const ViewPoint& point : view_.points) {
+      const Eigen::Vector2d pixel = project(camera_, truth_.inverse() * worldPosition(view_, point));
+      if (pixel.x() < 0.3 * camera_.width) few.points.push_back(point);
+    }
+    std::vector<Track> tracks;
+    for (Track track : tracks_) {
+      const ViewPoint* point = findPoint(view_, track.id);
+      if (!point) continue;
+      const Eigen::Vector3d position = worldPosition(view_, *point);
+      track.keyframe = 1;
+      track.keyframe_images = std::make_shared<FrameImages>();
+      track.keyframe_pixel = project(camera_, view_.keyframes[1].world_T_camera.inverse() * position).cast<float>();
+      track.sigma_normal = track.sigma_tangent = 0.5f;
+      track.pixel = (project(camera_, truth_.inverse() * position) +
+                     Eigen::Vector2d(test::gaussian(random, 0.5), test::gaussian(random, 0.5)))
+                        .cast<float>();
+      tracks.push_back(track);
+    }
+    const FramePose alone = estimatePose(camera_, few, tracks, truth_, without);
+    const FramePose helped = estimatePose(camera_, few, tracks, truth_, with);
+    ASSERT_TRUE(alone.result.converged && helped.result.converged);
+    EXPECT_EQ(helped.result.inliers.size(), few.points.size());
+    EXPECT_LE(helped.result.inlier_count, static_cast<int>(few.points.size()));
+    EXPECT_LT(helped.result.covariance.trace(), alone.result.covariance.trace());
+    error_alone += (alone.result.world_T_camera.translation - truth_.translation).squaredNorm();
+    error_helped += (helped.result.world_T_camera.translation - truth_.translation).squaredNorm();
+  }
+  EXPECT_LT(error_helped, 0.7 * error_alone);
 }
 
 }  // namespace

@@ -1,0 +1,17 @@
+// Saved maps on disk: whole or not at all, of one camera.
+#pragma once
+
+#include <string>
+
+#include "map/map_file.h"
+
+namespace edgeslam {
+
+// Replaces what was there. Throws InputError where it cannot be written (what was there stays).
+void saveMap(const std::string& path, const Camera& camera, const Map& map);
+
+// Throws InputError where there is no such file, it is no map that decodeMap takes, it has no keyframe, or was made
+// with another calibration than `camera`.
+Map loadMap(const std::string& path, const Camera& camera);
+
+}  // namespace edgeslam

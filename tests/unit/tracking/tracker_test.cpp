@@ -1,0 +1,294 @@
+// The tracker from frame to frame before a textured plane, with a map that is known in place of mapping's answers.
+#include "tracking/tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "unit/tracking/textured_plane.h"
+
+namespace edgeslam {
+namespace {
+
+const Camera camera = smallCamera();
+constexpr std::int64_t interval_ns = 33'333'333;
+
+const TexturedPlane& wall() {
+  static const TexturedPlane plane{SmoothTexture(51, 10, 60)};
+  return plane;
+}
+
+// Where the camera is at frame `i`: past the plane, turning a little.
+Pose path(int i) { return {rotationExp({0.002 * i, -0.003 * i, 0.001 * i}), {0.012 * i, 0.005 * i, 0.004 * i}}; }
+
+// Rendered once, as that takes longer than tracking.
+const cv::Mat& imageAt(int i) {
+  static std::map<int, cv::Mat> rendered;
+  cv::Mat& image = rendered[i];
+  if (image.empty()) image = wall().render(camera, path(i));
+  return image;
+}
+cv::Mat black() { return cv::Mat(camera.height, camera.width, CV_8U, cv::Scalar(0)); }
+cv::Mat elsewhere() { return TexturedPlane{SmoothTexture(77, 10, 60)}.render(camera, Pose()); }
+
+TrackingOutcome trackFrame(Tracker& tracker, int i) { return tracker.track(i, i * interval_ns, imageAt(i)); }
+
+// What mapping would answer to the first frame, if it knew the plane.
+MapView knownMap(const TrackedFrame& first) {
+  MapView view = flatView(first);
+  view.version = 1;
+  view.initialised = true;
+  view.waiting_for.clear();
+  view.keyframes[0].images = first.images;
+  for (ViewPoint& point : view.points) {
+    const PointObservation& seen = first.observations[static_cast<std::size_t>(&point - view.points.data())];
+    point = viewPoint(view, point.id, 0, wall().seenAt(camera, Pose(), seen.measurement.pixel));
+    point.source = 0;
+    point.source_measurement = seen.measurement;
+    point.corner = seen.corner;
+  }
+  return view;
+}
+
+// A tracker that knows the plane and has followed it up to frame `last`.
+struct Tracked {
+  Tracker tracker{camera, TrackerOptions()};
+  MapView view;
+  TrackingOutcome outcome;  // of frame `last`
+
+  explicit Tracked(int last) {
+    outcome = trackFrame(tracker, 0);
+    view = knownMap(outcome.for_mapping.at(0));
+    tracker.adopt(view);
+    for (int i = 1; i <= last; ++i) outcome = trackFrame(tracker, i);
+  }
+};
+
+// The same map in another world frame: new_T_old, and lengths times `scale`.
+MapView moved(MapView view, const Pose& new_T_old, double scale = 1) {
+  for (ViewKeyframe& keyframe : view.keyframes) {
+    keyframe.world_T_camera.translation *= scale;
+    keyframe.world_T_camera = new_T_old * keyframe.world_T_camera;
+  }
+  for (ViewPoint& point : view.points) {
+    point.inverse_depth /= scale;
+    point.inverse_depth_sigma /= scale;
+  }
+  ++view.version;
+  return view;
+}
+
+double distance(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }
+double angle(const Pose& a, const Pose& b) { return rotationAngle(a.rotation, b.rotation); }
+
+TEST(Tracker, TheFirstFrameStartsAMap) {
+  Tracker tracker(camera, TrackerOptions());
+  const TrackingOutcome outcome = trackFrame(tracker, 0);
+  EXPECT_EQ(outcome.state, FrameState::initialising);
+  EXPECT_NE(outcome.reason, "");
+  EXPECT_EQ(outcome.reference, 0);
+  ASSERT_EQ(outcome.for_mapping.size(), 1U);
+  const TrackedFrame& first = outcome.for_mapping[0];
+  EXPECT_EQ(first.keyframe, 0);
+  EXPECT_TRUE(first.images);
+  EXPECT_GT(first.observations.size(), 100U);
+  EXPECT_EQ(static_cast<int>(first.observations.size()), outcome.tracked_points);
+  for (std::size_t i = 1; i < first.observations.size(); ++i) {
+    EXPECT_LT(first.observations[i - 1].point, first.observations[i].point);
+  }
+  // Until there is a map every frame helps to start it, and none says that it is tracked.
+  const TrackingOutcome second = trackFrame(tracker, 1);
+  EXPECT_EQ(second.state, FrameState::initialising);
+  EXPECT_NE(second.reason, "");
+  ASSERT_EQ(second.for_mapping.size(), 1U);
+  EXPECT_EQ(second.for_mapping[0].keyframe, -1);
+  EXPECT_FALSE(second.for_mapping[0].images);
+}
+
+TEST(Tracker, NothingToSeeStartsNoMap) {
+  Tracker tracker(camera, TrackerOptions());
+  const TrackingOutcome outcome = tracker.track(0, 0, black());
+  EXPECT_EQ(outcome.state, FrameState::initialising);
+  EXPECT_NE(outcome.reason.find("too few points"), std::string::npos) << outcome.reason;
+  EXPECT_TRUE(outcome.for_mapping.empty());
+  EXPECT_EQ(trackFrame(tracker, 1).for_mapping.size(), 1U);
+}
+
+TEST(Tracker, AnotherSceneBeforeTheMapStandsStartsAnew) {
+  Tracker tracker(camera, TrackerOptions());
+  const MapView former = knownMap(trackFrame(tracker, 0).for_mapping.at(0));
+  const TrackingOutcome outcome = tracker.track(5, 5 * interval_ns, elsewhere());
+  EXPECT_EQ(outcome.state, FrameState::initialising);
+  ASSERT_EQ(outcome.for_mapping.size(), 1U) << outcome.reason;
+  EXPECT_EQ(outcome.for_mapping[0].keyframe, 0);
+  EXPECT_EQ(outcome.for_mapping[0].frame_index, 5);
+  tracker.adopt(former);  // of the start that was given up
+  EXPECT_FALSE(tracker.view().initialised);
+  EXPECT_EQ(tracker.view().origin_frame, 5);
+}
+
+TEST(Tracker, PosesInAKnownMapAreTheTrueOnes) {
+  Tracked run(0);
+  for (int i = 1; i <= 6; ++i) {
+    const TrackingOutcome outcome = trackFrame(run.tracker, i);
+    ASSERT_EQ(outcome.state, FrameState::tracking) << i << ": " << outcome.reason;
+    EXPECT_EQ(outcome.reason, "");
+    EXPECT_LT(distance(outcome.world_T_camera, path(i)), 0.001) << i;
+    EXPECT_LT(angle(outcome.world_T_camera, path(i)), 0.0005) << i;
+    EXPECT_GT(outcome.mapped_points, 50);
+    EXPECT_GT(outcome.covariance.diagonal().minCoeff(), 0);
+    const ViewKeyframe* reference = run.tracker.view().keyframes.find(outcome.reference);
+    ASSERT_NE(reference, nullptr);
+    EXPECT_LT(distance(reference->world_T_camera * outcome.reference_T_camera, outcome.world_T_camera), 1e-12);
+  }
+}
+
+TEST(Tracker, TheSameFramesGiveTheSamePosesToTheLastBit) {
+  const Tracked once(3), again(3);
+  EXPECT_EQ(once.outcome.world_T_camera.translation, again.outcome.world_T_camera.translation);
+  EXPECT_EQ(once.outcome.world_T_camera.rotation.coeffs(), again.outcome.world_T_camera.rotation.coeffs());
+  EXPECT_EQ(once.outcome.covariance, again.outcome.covariance);
+}
+
+TEST(Tracker, AnOlderOrForeignViewIsIgnored) {
+  Tracked run(2);
+  Tracker undisturbed = run.tracker;
+  const Pose elsewhere_pose{rotationExp({0.3, 0, 0}), {5, 0, 0}};
+  MapView older = moved(run.view, elsewhere_pose);
+  older.version = run.view.version;
+  run.tracker.adopt(older);
+  older.version = 0;
+  run.tracker.adopt(older);
+  MapView foreign = moved(run.view, elsewhere_pose);
+  foreign.version = 1000;
+  foreign.origin_frame = 1;
+  run.tracker.adopt(foreign);
+  EXPECT_EQ(run.tracker.view().version, run.view.version);
+  const TrackingOutcome is = trackFrame(run.tracker, 3), should_be = trackFrame(undisturbed, 3);
+  EXPECT_EQ(is.state, FrameState::tracking);
+  EXPECT_EQ(is.world_T_camera.translation, should_be.world_T_camera.translation);
+  EXPECT_EQ(is.world_T_camera.rotation.coeffs(), should_be.world_T_camera.rotation.coeffs());
+}
+
+class TrackerMovedWith : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Scale, TrackerMovedWith, testing::Values(1.0, 1.3));
+
+TEST_P(TrackerMovedWith, ANewerViewMovesThePosesWithTheWorld) {
+  const double scale = GetParam();
+  const Pose new_T_old{rotationExp({0.4, -1.1, 0.7}), {3, -2, 8}};
+  Tracked run(3);
+  Tracker elsewhere = run.tracker;
+  run.tracker.adopt(moved(run.view, Pose()));
+  elsewhere.adopt(moved(run.view, new_T_old, scale));
+  EXPECT_EQ(elsewhere.view().version, run.view.version + 1);
+  // Keyframes that mapping has not seen yet have moved along.
+  EXPECT_EQ(elsewhere.view().keyframes.size(), run.tracker.view().keyframes.size());
+  for (int i = 4; i <= 6; ++i) {
+    const TrackingOutcome is = trackFrame(elsewhere, i), was = trackFrame(run.tracker, i);
+    ASSERT_EQ(is.state, FrameState::tracking) << is.reason;
+    ASSERT_EQ(was.state, FrameState::tracking) << was.reason;
+    Pose should_be = was.world_T_camera;
+    should_be.translation *= scale;
+    should_be = new_T_old * should_be;
+    const double tolerance = scale == 1 ? 1e-8 : 1e-5;
+    EXPECT_LT(distance(is.world_T_camera, should_be), tolerance) << i;
+    EXPECT_LT(angle(is.world_T_camera, should_be), tolerance) << i;
+  }
+}
+
+TEST(Tracker, ABlackFrameIsPredictedAndTrackingGoesOnAfterIt) {
+  Tracked run(4);
+  const TrackingOutcome dark = run.tracker.track(5, 5 * interval_ns, black());
+  EXPECT_EQ(dark.state, FrameState::predicted);
+  EXPECT_NE(dark.reason, "");
+  EXPECT_TRUE(dark.for_mapping.empty());
+  EXPECT_EQ(dark.mapped_points, 0);
+  EXPECT_LT(distance(dark.world_T_camera, path(5)), 0.01) << "goes on as it moved";
+  EXPECT_GT(dark.covariance(0, 0), run.outcome.covariance(0, 0));
+  const TrackingOutcome next = trackFrame(run.tracker, 6);
+  EXPECT_EQ(next.state, FrameState::tracking) << next.reason;
+  EXPECT_LT(distance(next.world_T_camera, path(6)), 0.001);
+}
+
+TEST(Tracker, BlackForLongIsNeverTaken) {
+  Tracked run(2);
+  for (int i = 3; i < 40; ++i) {  // longer than the blur gate rejects frames in a row
+    const TrackingOutcome outcome = run.tracker.track(i, i * interval_ns, black());
+    ASSERT_TRUE(outcome.state == FrameState::predicted || outcome.state == FrameState::lost) << i;
+    ASSERT_TRUE(outcome.for_mapping.empty()) << i;
+  }
+}
+
+TEST(Tracker, ThePredictedPosesDoubtGrowsWithTheTimeSince) {
+  const Tracked run(4);
+  Matrix6d before = run.outcome.covariance;
+  double farthest = 0;
+  for (const int later : {1, 2, 3, 10, 100}) {
+    const TrackingOutcome outcome = run.tracker.skip((4 + later) * interval_ns, "unreadable");
+    EXPECT_EQ(outcome.state, FrameState::predicted);
+    EXPECT_EQ(outcome.reason, "unreadable");
+    EXPECT_GT((outcome.covariance - before).diagonal().minCoeff(), 0) << later;
+    before = outcome.covariance;
+    farthest = std::max(farthest, distance(outcome.world_T_camera, run.outcome.world_T_camera));
+  }
+  EXPECT_GT(before(0, 0), 1) << "after three seconds it is anywhere";
+  EXPECT_LT(farthest, 0.1) << "no flying on for ever";
+}
+
+TEST(Tracker, AnotherPlaceIsLostAndGivesNoKeyframeOfIt) {
+  Tracked run(3);
+  const TrackingOutcome outcome = run.tracker.track(4, 4 * interval_ns, elsewhere());
+  EXPECT_EQ(outcome.state, FrameState::lost);
+  EXPECT_NE(outcome.reason, "");
+  EXPECT_GT(outcome.covariance(0, 0), run.outcome.covariance(0, 0));
+  for (const TrackedFrame& frame : outcome.for_mapping) EXPECT_NE(frame.frame_index, 4);
+  ASSERT_TRUE(run.tracker.hasLostFrame());
+  EXPECT_EQ(run.tracker.lostFrame(9).keyframe, 9);
+  EXPECT_EQ(run.tracker.lostFrame(9).frame_index, 4);
+  const TrackingOutcome back = trackFrame(run.tracker, 5);
+  EXPECT_EQ(back.state, FrameState::tracking) << back.reason;
+  EXPECT_FALSE(run.tracker.hasLostFrame());
+}
+
+// The map points as they are measured in the frame at `pose`.
+std::vector<FoundAgain> foundIn(const MapView& view, const Pose& pose, const Pose& world_T_plane) {
+  std::vector<FoundAgain> found;
+  for (const ViewPoint& point : view.points) {
+    const Eigen::Vector3d on_plane = world_T_plane.inverse() * worldPosition(view, point);
+    const Eigen::Vector2d pixel = project(camera, pose.inverse() * on_plane);
+    if (!insideImage(camera, pixel, 20)) continue;
+    found.push_back({point.id, point.source_measurement, point.corner});
+    found.back().measurement.pixel = pixel;
+  }
+  return found;
+}
+
+TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
+  Tracked run(2);
+  ASSERT_EQ(run.tracker.track(3, 3 * interval_ns, elsewhere()).state, FrameState::lost);
+  // So long after, the last frame's points are not looked for any more.
+  const std::int64_t later_ns = 3'000'000'000;
+  const TrackingOutcome lost = run.tracker.track(90, later_ns, imageAt(8));
+  ASSERT_EQ(lost.state, FrameState::lost);
+  ASSERT_TRUE(run.tracker.hasLostFrame());
+  EXPECT_EQ(run.tracker.lostImages().frame_index, 90);
+
+  const Pose new_T_old{rotationExp({0.1, 0.9, -0.2}), {-4, 2, 1}};
+  const MapView view = moved(run.view, new_T_old);
+  const std::vector<FoundAgain> found = foundIn(view, path(8), new_T_old);
+  ASSERT_GT(found.size(), 50U);
+  run.tracker.resume(view, new_T_old * path(8), 1e-6 * Matrix6d::Identity(), found);
+  EXPECT_FALSE(run.tracker.hasLostFrame());
+  EXPECT_EQ(run.tracker.tracks().size(), found.size());
+  EXPECT_EQ(run.tracker.view().version, view.version);
+  for (int i = 9; i <= 11; ++i) {
+    const TrackingOutcome outcome = run.tracker.track(82 + i, later_ns + (i - 8) * interval_ns, imageAt(i));
+    ASSERT_EQ(outcome.state, FrameState::tracking) << outcome.reason;
+    EXPECT_LT(distance(outcome.world_T_camera, new_T_old * path(i)), 0.001) << i;
+    EXPECT_LT(angle(outcome.world_T_camera, new_T_old * path(i)), 0.0005) << i;
+    for (const TrackedFrame& keyframe : outcome.for_mapping) EXPECT_EQ(keyframe.keyframe, 1) << "after the view's";
+  }
+}
+
+}  // namespace
+}  // namespace edgeslam
