@@ -142,6 +142,11 @@ ordered_json framesJson(const RunResult& result, const Clock& clock) {
   return {{"times", times}, {"tracked", tracked}, {"mapped", mapped}};
 }
 
+bool ranAnywhere(const RunSummary& summary, Stage stage) {
+  return std::any_of(summary.stages.begin(), summary.stages.end(),
+                     [&](const StageSummary& ran) { return ran.name == stageName(stage); });
+}
+
 // Of each stage the mean over the frames that one column of the chart stands for.
 ordered_json stageSeriesJson(const RunResult& result, const RunSummary& summary, const Clock& clock) {
   const Rounding fine(1e-2);
@@ -150,16 +155,15 @@ ordered_json stageSeriesJson(const RunResult& result, const RunSummary& summary,
   ordered_json names = ordered_json::array();
   ordered_json series = ordered_json::array();
   for (std::size_t i = 0; i < result.frames.size(); i += stride) times.push_back(clock(result.frames[i].time_ns));
-  for (const StageTimes& stage : summary.stages) {
-    if (stage.name == "total") continue;
-    names.push_back(stage.name);
+  for (const Stage stage : all_stages) {
+    if (!ranAnywhere(summary, stage)) continue;
+    names.push_back(stageName(stage));
     ordered_json values = ordered_json::array();
     for (std::size_t i = 0; i < result.frames.size(); i += stride) {
       const std::size_t end = std::min(i + stride, result.frames.size());
       double sum = 0;
       for (std::size_t j = i; j < end; ++j) {
-        const auto time = result.frames[j].stage_ms.find(stage.name);
-        if (time != result.frames[j].stage_ms.end()) sum += time->second;
+        sum += result.frames[j].times[stage];
       }
       values.push_back(fine(sum / static_cast<double>(end - i)));
     }

@@ -1,10 +1,10 @@
 #include "dataset/run_files.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "dataset/file_set.h"
 #include "dataset/ply.h"
@@ -55,29 +55,31 @@ void appendPose(std::string& row, bool present, const Pose& pose) {
 
 void appendStandardDeviations(std::string& row, const FrameRecord& frame) {
   for (int i = 0; i < 6; ++i) {
-    const double variance = frame.covariance(i, i);
-    row += "," + (frame.has_live_pose && variance > 0 ? number("%.6g", std::sqrt(variance)) : std::string());
+    const double deviation = frame.standard_deviation[i];
+    row += "," + (frame.has_live_pose && deviation > 0 ? number("%.6g", deviation) : std::string());
   }
 }
 
-std::set<std::string> stageNames(const RunResult& result) {
-  std::set<std::string> names;
-  for (const FrameRecord& frame : result.frames) {
-    for (const auto& stage : frame.stage_ms) names.insert(stage.first);
+// Those that ran in any frame.
+std::vector<Stage> stagesOf(const RunResult& result) {
+  std::vector<Stage> stages;
+  for (const Stage stage : all_stages) {
+    const auto ran = [&](const FrameRecord& frame) { return frame.times.ran(stage); };
+    if (std::any_of(result.frames.begin(), result.frames.end(), ran)) stages.push_back(stage);
   }
-  return names;
+  return stages;
 }
 
 }  // namespace
 
 std::string formatFrameTable(const RunResult& result) {
-  const std::set<std::string> stages = stageNames(result);
+  const std::vector<Stage> stages = stagesOf(result);
   std::string text = "index,time_s,state,reason";
   for (const char* pose : {"live", "final"}) {
     for (const char* value : {"x", "y", "z", "qx", "qy", "qz", "qw"}) text += std::string(",") + pose + "_" + value;
   }
   text += ",sigma_x,sigma_y,sigma_z,sigma_rx_rad,sigma_ry_rad,sigma_rz_rad,tracked_points,mapped_points,keyframe";
-  for (const std::string& stage : stages) text += "," + quoted(stage + "_ms");
+  for (const Stage stage : stages) text += std::string(",") + stageName(stage) + "_ms";
   text += "\n";
   for (const FrameRecord& frame : result.frames) {
     text += std::to_string(frame.index) + "," + secondsWithNanoseconds(frame.time_ns) + "," + stateName(frame.state) +
@@ -87,9 +89,8 @@ std::string formatFrameTable(const RunResult& result) {
     appendStandardDeviations(text, frame);
     text += "," + std::to_string(frame.tracked_points) + "," + std::to_string(frame.mapped_points) +
             (frame.is_keyframe ? ",1" : ",0");
-    for (const std::string& stage : stages) {
-      const auto time = frame.stage_ms.find(stage);
-      text += "," + (time != frame.stage_ms.end() ? number("%.3f", time->second) : std::string());
+    for (const Stage stage : stages) {
+      text += "," + (frame.times.ran(stage) ? number("%.3f", frame.times[stage]) : std::string());
     }
     text += "\n";
   }

@@ -23,7 +23,7 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
 }
 
-StageTimes stageTimes(const std::string& name, std::vector<double> times) {
+StageSummary summaryOf(const std::string& name, std::vector<double> times) {
   std::sort(times.begin(), times.end());
   double sum = 0;
   for (const double time : times) sum += time;
@@ -31,17 +31,19 @@ StageTimes stageTimes(const std::string& name, std::vector<double> times) {
   return {name, count, sum / static_cast<double>(count), quantile(times, 0.5), quantile(times, 0.99), times.back()};
 }
 
-std::vector<StageTimes> allStageTimes(const RunResult& result) {
-  std::map<std::string, std::vector<double>> times;
+std::vector<StageSummary> allStages(const RunResult& result) {
+  std::map<Stage, std::vector<double>> times;
   std::vector<double> totals;
   for (const FrameRecord& frame : result.frames) {
-    for (const auto& [name, time] : frame.stage_ms) times[name].push_back(time);
-    if (!frame.stage_ms.empty()) totals.push_back(totalMilliseconds(frame));
+    for (const Stage stage : all_stages) {
+      if (frame.times.ran(stage)) times[stage].push_back(frame.times[stage]);
+    }
+    if (frame.times.total() > 0) totals.push_back(frame.times.total());
   }
-  std::vector<StageTimes> stages;
+  std::vector<StageSummary> stages;
   stages.reserve(times.size() + 1);
-  for (const auto& [name, values] : times) stages.push_back(stageTimes(name, values));
-  if (!totals.empty()) stages.push_back(stageTimes("total", totals));
+  for (auto& [stage, values] : times) stages.push_back(summaryOf(stageName(stage), std::move(values)));
+  if (!totals.empty()) stages.push_back(summaryOf("total", std::move(totals)));
   return stages;
 }
 
@@ -100,12 +102,6 @@ Trajectory keyframeTrajectory(const RunResult& result) {
   return trajectory;
 }
 
-double totalMilliseconds(const FrameRecord& frame) {
-  double total = 0;
-  for (const auto& [name, time] : frame.stage_ms) total += time;
-  return total;
-}
-
 RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& ground_truth) {
   RunSummary summary;
   summary.frames = static_cast<std::int64_t>(result.frames.size());
@@ -133,7 +129,7 @@ RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& g
   }
   summary.wall_s = result.wall_s;
   if (result.wall_s > 0) summary.real_time_ratio = summary.recording_s / result.wall_s;
-  summary.stages = allStageTimes(result);
+  summary.stages = allStages(result);
   summary.has_ground_truth = ground_truth.has_value();
   if (ground_truth) {
     summary.errors.trajectory = errorIfComparable(finalTrajectory(result), *ground_truth);
@@ -151,7 +147,7 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
   ordered_json states = ordered_json::object();
   for (const auto& [state, count] : summary.states) states[stateName(state)] = count;
   ordered_json stages = ordered_json::object();
-  for (const StageTimes& stage : summary.stages) {
+  for (const StageSummary& stage : summary.stages) {
     stages[stage.name] = {{"frames", stage.frames},
                           {"mean", stage.mean},
                           {"p50", stage.median},

@@ -17,7 +17,7 @@
 namespace edgeslam {
 
 // Over the frames in which the stage ran [ms].
-struct StageTimes {
+struct StageSummary {
   std::string name;
   std::int64_t frames = 0;
   double mean = 0, median = 0, percentile_99 = 0, max = 0;
@@ -46,8 +46,8 @@ struct RunSummary {
   std::optional<double> first_live_pose_s;       // from the first frame to the first good live pose [s]
   double recording_s = 0;                        // from the first frame to the last [s]
   double wall_s = 0;
-  double real_time_ratio = 0;      // recording_s over wall_s: above 1 is faster than real time
-  std::vector<StageTimes> stages;  // by name; "total" (their sum in each frame) last
+  double real_time_ratio = 0;        // recording_s over wall_s: above 1 is faster than real time
+  std::vector<StageSummary> stages;  // in the order of a frame; "total" (their sum in each frame) last
   bool has_ground_truth = false;
   RunErrors errors;
   std::vector<LoopErrors> loops;  // by closed loop
@@ -57,9 +57,6 @@ struct RunSummary {
 Trajectory finalTrajectory(const RunResult& result);
 Trajectory liveTrajectory(const RunResult& result);
 Trajectory keyframeTrajectory(const RunResult& result);
-
-// Sum of the stages of one frame [ms].
-double totalMilliseconds(const FrameRecord& frame);
 
 RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& ground_truth);
 

@@ -23,6 +23,10 @@ TrackingState stateOf(FrameState state) {
   return TrackingState::lost;
 }
 
+Eigen::Matrix<float, 6, 1> standardDeviation(const Matrix6d& covariance) {
+  return covariance.diagonal().cwiseMax(0).cwiseSqrt().cast<float>();
+}
+
 double millisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
@@ -104,7 +108,7 @@ void LockstepRun::hand(const std::vector<TrackedFrame>& frames, FrameRecord& rec
     for (const CulledKeyframe& culled : mapper_.takeCulled()) culled_[culled.id] = culled;
     views_.push_back({processed_ + std::max(1, settings_.view_delay_frames), mapper_.view()});
   }
-  record.stage_ms["mapping"] = millisecondsSince(start);
+  record.times.add(Stage::mapping, millisecondsSince(start));
 }
 
 // Places: the new keyframes are made known to relocalisation, and compared with the old ones.
@@ -168,7 +172,7 @@ void LockstepRun::findAgain(FrameRecord& record) {
       record.reason = "not found again in the map: " + found.reason;
     }
   }
-  record.stage_ms["places"] = millisecondsSince(start);
+  record.times.add(Stage::places, millisecondsSince(start));
 }
 
 void LockstepRun::goOnFrom(FrameRecord& record, TrackingState state, const Pose& world_T_camera,
@@ -179,10 +183,9 @@ void LockstepRun::goOnFrom(FrameRecord& record, TrackingState state, const Pose&
   record.reason.clear();
   record.has_live_pose = true;
   record.live_world_T_camera = world_T_camera;
-  record.covariance = covariance;
+  record.standard_deviation = standardDeviation(covariance);
   record.mapped_points = static_cast<int>(points.size());
-  references_.back() = centre;
-  reference_T_camera_.back() = mapper_.map().keyframes[centre].world_T_camera.inverse() * world_T_camera;
+  carried_.back() = {centre, mapper_.map().keyframes[centre].world_T_camera.inverse() * world_T_camera};
   lost_frames_ = 0;
 }
 
@@ -198,12 +201,11 @@ FrameRecord& LockstepRun::record(std::int64_t index, std::int64_t time_ns, const
   frame.reason = outcome.reason;
   frame.has_live_pose = outcome.state == FrameState::tracking || outcome.state == FrameState::predicted;
   frame.live_world_T_camera = outcome.world_T_camera;
-  frame.covariance = outcome.covariance;
+  frame.standard_deviation = standardDeviation(outcome.covariance);
   frame.tracked_points = outcome.tracked_points;
   frame.mapped_points = outcome.mapped_points;
-  for (const auto& [stage, milliseconds] : outcome.times) frame.stage_ms[stage] = milliseconds;
-  references_.push_back(outcome.state == FrameState::tracking ? outcome.reference : -1);
-  reference_T_camera_.push_back(outcome.reference_T_camera);
+  frame.times = outcome.times;
+  carried_.push_back({outcome.state == FrameState::tracking ? outcome.reference : -1, outcome.reference_T_camera});
   result_.frames.push_back(std::move(frame));
   return result_.frames.back();
 }
@@ -240,8 +242,7 @@ RunResult LockstepRun::finish() {
   if (!mapper_.initialised()) return std::move(result_);
   const Map& map = mapper_.map();
   for (std::size_t i = 0; i < result_.frames.size(); ++i) {
-    const KeyframeId reference = references_[i];
-    const std::optional<Pose> pose = finalPose(reference, reference_T_camera_[i]);
+    const std::optional<Pose> pose = finalPose(carried_[i].reference, carried_[i].reference_T_camera);
     if (!pose) continue;
     result_.frames[i].has_final_pose = true;
     result_.frames[i].final_world_T_camera = *pose;

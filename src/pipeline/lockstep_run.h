@@ -62,8 +62,11 @@ class LockstepRun {
   std::deque<DueView> views_;
   std::int64_t processed_ = 0;
   std::int64_t drawing_interval_ = 100;
-  std::vector<KeyframeId> references_;  // by frame record: the keyframe that carries its pose, or -1
-  std::vector<Pose> reference_T_camera_;
+  struct CarriedPose {
+    KeyframeId reference = -1;  // the keyframe that carries the frame's pose, or -1
+    Pose reference_T_camera;
+  };
+  std::deque<CarriedPose> carried_;  // by frame record
   std::map<KeyframeId, CulledKeyframe> culled_;
 };
 

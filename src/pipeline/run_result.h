@@ -3,13 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <deque>
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
 #include "geometry/camera.h"
 #include "geometry/pose.h"
+#include "tracking/stage_times.h"
 
 namespace edgeslam {
 
@@ -36,15 +37,15 @@ struct FrameRecord {
   TrackingState state = TrackingState::initialising;  // as given out at the time
   std::string reason;                                 // why it is not `tracking`, or empty
   bool has_live_pose = false;
-  Pose live_world_T_camera;                // as given out at the time
-  Matrix6d covariance = Matrix6d::Zero();  // of the live pose: right-hand update [translation; rotation]
-  bool has_final_pose = false;             // good, and carried by its keyframe's final pose
+  Pose live_world_T_camera;  // as given out at the time
+  // Of the live pose: right-hand update [translation; rotation] (map units, rad); 0 where there is none.
+  Eigen::Matrix<float, 6, 1> standard_deviation = Eigen::Matrix<float, 6, 1>::Zero();
+  bool has_final_pose = false;  // good, and carried by its keyframe's final pose
   Pose final_world_T_camera;
   int tracked_points = 0;  // points followed in the image
   int mapped_points = 0;   // of these with depth and used for the pose
   bool is_keyframe = false;
-  std::map<std::string, double>
-      stage_ms;  // time of each stage in this frame [ms]: "pyramid", "edges", "flow", "pose", ...
+  StageTimes times;
 };
 
 struct KeyframeRecord {
@@ -86,7 +87,7 @@ struct ClosedLoop {
 
 struct RunResult {
   Camera camera;
-  std::vector<FrameRecord> frames;
+  std::deque<FrameRecord> frames;  // grows without moving what is there
   std::vector<KeyframeRecord> keyframes;
   std::vector<MapPointRecord> map_points;
   std::vector<DrawnFrame> drawings;

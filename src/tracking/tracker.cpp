@@ -35,7 +35,7 @@ TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, c
   }
   if (!last_.images && !view_.initialised) {
     startMap(std::move(frame), outcome);
-    clock.finished("choice of points");
+    clock.finished(Stage::choice_of_points);
     return outcome;
   }
 
@@ -46,25 +46,25 @@ TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, c
                                              options_.restart_share * static_cast<double>(tracks_at_start_))) {
     startMap(std::move(frame), outcome);
     outcome.reason = "starting anew: too few of the first frame's points are left";
-    clock.finished("choice of points");
+    clock.finished(Stage::choice_of_points);
     return outcome;
   }
   if (view_.initialised && located) {
     const KeyframeDecision decision = judge(frame);
     if (decision.choice == KeyframeChoice::previous_frame) {
       becomeKeyframe(last_, decision.reason, outcome);
-      clock.finished("choice of points");
+      clock.finished(Stage::choice_of_points);
       located = followAndLocate(last_, frame, clock);
     } else if (decision.choice == KeyframeChoice::current_frame) {
       becomeKeyframe(frame, decision.reason, outcome);
-      clock.finished("choice of points");
+      clock.finished(Stage::choice_of_points);
     }
   }
   if (located && view_.initialised &&
       frames_since_keyframe_ % options_.map_reuse.interval == options_.map_reuse.interval - 1) {
     reuseMapPoints(camera_, view_, frame.images, frame.edges, frame.world_T_camera,
                    static_cast<std::size_t>(options_.points.count), options_.map_reuse, frame.tracks);
-    clock.finished("map reuse");
+    clock.finished(Stage::map_reuse);
   }
   if (!located) {
     TrackingOutcome lost = skip(time_ns, "map points not found again");
@@ -96,9 +96,9 @@ Tracker::TrackedState Tracker::prepare(std::int64_t frame_index, std::int64_t ti
   images->frame_index = frame_index;
   images->time_ns = time_ns;
   images->pyramid = buildPyramid(grey, std::max(options_.flow.levels, 6));
-  clock.finished("pyramid");
+  clock.finished(Stage::pyramid);
   frame.edges = detectEdges(images->pyramid.levels[0], options_.edges);
-  clock.finished("edges");
+  clock.finished(Stage::edges);
   frame.images = std::move(images);
   return frame;
 }
@@ -128,18 +128,18 @@ void Tracker::startMap(TrackedState frame, TrackingOutcome& outcome) {
 bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, StageClock& clock) const {
   const double scene_depth = medianDepth(from.tracks, view_, from.world_T_camera, 1.0);
   const Pose predicted = alignImages(from, frame, predictPose(frame.images->time_ns), scene_depth);
-  clock.finished("alignment");
+  clock.finished(Stage::alignment);
   const auto predictions = predictPixels(camera_, from.tracks, view_, from.world_T_camera, predicted, scene_depth);
   const auto matches = followPoints(*from.images, *frame.images, from.tracks, predictions, options_.flow);
   frame.tracks = filterTracks(*from.images, *frame.images, frame.edges, from.tracks, matches, options_.flow);
-  clock.finished("flow");
+  clock.finished(Stage::flow);
 
   FramePose estimate = estimatePose(camera_, view_, frame.tracks, predicted, options_.pose);
   if (!estimate.result.converged) return false;
-  clock.finished("pose");
+  clock.finished(Stage::pose);
   refineTracks(camera_, view_, *frame.images, estimate.result.world_T_camera, scene_depth, options_.refinement,
                frame.tracks);
-  clock.finished("refinement");
+  clock.finished(Stage::refinement);
   estimate = estimatePose(camera_, view_, frame.tracks, estimate.result.world_T_camera, options_.pose);
   const auto in_view = static_cast<double>(estimate.track_of_observation.size());
   // A flat map fits a scene with depth only here and there: before the map stands no share of inliers is asked for.
@@ -164,7 +164,7 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
   lockAlongEdges(camera_, view_, frame.world_T_camera, options_.edge_lock, frame.tracks);
   const cv::Mat& grey = frame.images->pyramid.levels[0];
   for (Track& track : frame.tracks) updateAccuracy(grey, options_.points, track);
-  clock.finished("pose");
+  clock.finished(Stage::pose);
   return true;
 }
 

@@ -53,12 +53,13 @@ inline RunResult makeRun() {
     if (initialising) frame.reason = "too little parallax, \"0.4\" of 1.5 degrees";
     frame.has_live_pose = frame.has_final_pose = frame.state == TrackingState::tracking;
     frame.live_world_T_camera = frame.final_world_T_camera = inWorld(truth[static_cast<std::size_t>(i)].world_T_camera);
-    frame.covariance = 1e-4 * Matrix6d::Identity();
+    frame.standard_deviation.setConstant(1e-2f);
     frame.tracked_points = 300 + i, frame.mapped_points = 200 + i;
     frame.is_keyframe = frame.has_final_pose && i % 20 == 10;
-    frame.stage_ms = {{"edges", 5.0}, {"flow", 1.0 + 0.01 * i}};
+    frame.times.add(Stage::edges, 5);
+    frame.times.add(Stage::flow, 1 + 0.01 * i);
     if (frame.is_keyframe) {
-      frame.stage_ms["local adjustment"] = 40;
+      frame.times.add(Stage::mapping, 40);
       run.keyframes.push_back({static_cast<int>(run.keyframes.size()), frame.index, frame.time_ns,
                                frame.final_world_T_camera, "one second since the last", 120});
     }

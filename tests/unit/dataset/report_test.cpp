@@ -130,7 +130,7 @@ TEST(Report, publishedFiguresAreFoundByEveryNameOfASequence) {
 
 TEST(Report, longRunsAndLargeMapsStaySmall) {
   RunResult run = makeRun();
-  const std::vector<FrameRecord> frames = run.frames;
+  const std::deque<FrameRecord> frames = run.frames;
   const std::vector<MapPointRecord> points = run.map_points;
   for (std::int64_t i = made_frames; i < 30000; ++i) {
     run.frames.push_back(frames[static_cast<std::size_t>(20 + i % 20)]);

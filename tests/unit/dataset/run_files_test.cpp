@@ -115,10 +115,10 @@ TEST_F(RunFiles, frameTableHasARowAFrameAndAColumnAStage) {
   EXPECT_EQ(table[1][columnOf(table[0], "reason")], run.frames[0].reason);
   EXPECT_EQ(table[1][columnOf(table[0], "time_s")], "1000000000.123456789");
   EXPECT_EQ(table[1][columnOf(table[0], "live_x")], "");
-  EXPECT_EQ(table[1][columnOf(table[0], "local adjustment_ms")], "");
+  EXPECT_EQ(table[1][columnOf(table[0], "mapping_ms")], "");
   const std::size_t keyframe = made_initialising_frames;
   EXPECT_EQ(table[keyframe + 1][columnOf(table[0], "keyframe")], "1");
-  EXPECT_EQ(table[keyframe + 1][columnOf(table[0], "local adjustment_ms")], "40.000");
+  EXPECT_EQ(table[keyframe + 1][columnOf(table[0], "mapping_ms")], "40.000");
   EXPECT_NEAR(std::stod(table[keyframe + 1][columnOf(table[0], "sigma_rz_rad")]), 0.01, 1e-9);
 }
 
@@ -134,7 +134,7 @@ TEST_F(RunFiles, summaryCountsTheFrames) {
   EXPECT_NEAR(summary["first_pose_s"].get<double>(), made_initialising_frames / 30.0, 1e-3);
   EXPECT_NEAR(summary["real_time_ratio"].get<double>(), (made_frames - 1) / 30.0 / 2, 1e-3);
   EXPECT_EQ(summary["map_points"], run.map_points.size());
-  EXPECT_EQ(summary["stage_times_ms"]["local adjustment"]["frames"], run.keyframes.size());
+  EXPECT_EQ(summary["stage_times_ms"]["mapping"]["frames"], run.keyframes.size());
   EXPECT_NEAR(summary["stage_times_ms"]["total"]["max"].get<double>(), 5 + 2.1 + 40, 0.2);
   for (const char* name : {"trajectory", "live", "keyframes"}) {
     EXPECT_LT(summary["absolute_trajectory_error"][name]["rmse_m"].get<double>(), 1e-6) << name;
@@ -161,7 +161,7 @@ TEST_F(RunFiles, aRunThatNeverStartedIsWrittenToo) {
 TEST_F(RunFiles, equalResultsGiveEqualBytesWhateverTheTimes) {
   RunResult slower = makeRun();
   slower.wall_s = 77;
-  for (FrameRecord& frame : slower.frames) frame.stage_ms["edges"] += 3;
+  for (FrameRecord& frame : slower.frames) frame.times.add(Stage::edges, 3);
   writeRunFiles((folder_ / "a").string(), makeRun(), describeMadeRun(), std::nullopt);
   writeRunFiles((folder_ / "b").string(), slower, describeMadeRun(), std::nullopt);
   for (const char* name : {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "map.ply"}) {

@@ -59,7 +59,7 @@ TEST(FoundAgain, EveryPoseCalledGoodHasItsCovariance) {
     if (!isGoodPose(frame.state)) continue;
     ++good;
     EXPECT_TRUE(frame.has_live_pose);
-    for (int i = 0; i < 6; ++i) EXPECT_GT(frame.covariance(i, i), 0) << frame.index;
+    for (int i = 0; i < 6; ++i) EXPECT_GT(frame.standard_deviation[i], 0) << frame.index;
   }
   EXPECT_GT(good, 0);
 }

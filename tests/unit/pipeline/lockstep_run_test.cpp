@@ -84,7 +84,7 @@ TEST(LockstepRun, TheSameFramesGiveTheSameRunToTheLastBit) {
     EXPECT_EQ(a.frames[i].state, b.frames[i].state);
     EXPECT_EQ(a.frames[i].reason, b.frames[i].reason);
     EXPECT_EQ(a.frames[i].has_final_pose, b.frames[i].has_final_pose);
-    EXPECT_EQ(a.frames[i].covariance, b.frames[i].covariance);
+    EXPECT_EQ(a.frames[i].standard_deviation, b.frames[i].standard_deviation);
     EXPECT_EQ(a.frames[i].mapped_points, b.frames[i].mapped_points);
     expectSamePose(a.frames[i].live_world_T_camera, b.frames[i].live_world_T_camera);
     expectSamePose(a.frames[i].final_world_T_camera, b.frames[i].final_world_T_camera);
@@ -117,7 +117,7 @@ TEST(LockstepRun, WhatARunLeavesFitsTogether) {
     EXPECT_EQ(frame.has_live_pose, frame.state != TrackingState::initialising);
     if (frame.has_live_pose) {
       EXPECT_GT(frame.mapped_points, 20);
-      EXPECT_GT(frame.covariance.diagonal().minCoeff(), 0);
+      EXPECT_GT(frame.standard_deviation.minCoeff(), 0);
     }
     final_poses += frame.has_final_pose;
   }
@@ -165,8 +165,8 @@ TEST(LockstepRun, UnreadableFramesArePredictedAndCounted) {
     // Less is known of it than of the last measured one.
     const FrameRecord& before = result.frames[39];
     if (i == 41) {
-      EXPECT_GT(frame.covariance(0, 0), before.covariance(0, 0));
-      EXPECT_GT(frame.covariance(3, 3), before.covariance(3, 3));
+      EXPECT_GT(frame.standard_deviation[0], before.standard_deviation[0]);
+      EXPECT_GT(frame.standard_deviation[3], before.standard_deviation[3]);
     }
   }
 }
