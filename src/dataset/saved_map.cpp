@@ -1,8 +1,14 @@
 #include "dataset/saved_map.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "dataset/atomic_file.h"
@@ -21,9 +27,16 @@ std::string readWhole(const std::string& path) {
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || size > largest_file) throw InputError(path + ": too large for a map");
   std::ifstream file(path, std::ios::binary);
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (!file || !file.read(bytes.data(), static_cast<std::streamsize>(size)))
-    throw InputError(path + ": cannot be read");
+  std::string bytes;
+  const auto readTo = [&](std::uintmax_t end) {
+    const std::size_t begin = bytes.size();
+    bytes.resize(static_cast<std::size_t>(end));
+    if (!file || !file.read(&bytes[begin], static_cast<std::streamsize>(end - begin)))
+      throw InputError(path + ": cannot be read");
+  };
+  // A film given by mistake is not read to its end.
+  readTo(std::min<std::uintmax_t>(size, 16));
+  if (bytes == encodeMap(SavedMap()).substr(0, bytes.size())) readTo(size);
   return bytes;
 }
 
@@ -33,6 +46,24 @@ void saveMap(const std::string& path, const Camera& camera, const Map& map) {
   const std::string problem = mapProblem(camera, map);
   if (!problem.empty()) throw std::logic_error("the map would not be read back: " + problem);
   writeFileAtomically(path, encodeMap({camera, map}));
+}
+
+void requireMapCanBeSaved(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InputError(path + ": expected a file to save the map to, this is no file");
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(path, error).parent_path();
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw InputError(path + ": the map cannot be saved there: " + folder.string() + " is no folder");
+  }
+  // Permissions alone don't tell: there are folders in which not even root can make a file.
+  std::string trial = path + ".XXXXXX";
+  const int file = ::mkostemp(trial.data(), O_CLOEXEC);
+  if (file < 0) throw InputError(path + ": the map cannot be saved there: " + std::strerror(errno));
+  ::close(file);
+  ::unlink(trial.c_str());
 }
 
 Map loadMap(const std::string& path, const Camera& camera) {

@@ -10,6 +10,10 @@ namespace edgeslam {
 // Replaces what was there. Throws InputError where it cannot be written (what was there stays).
 void saveMap(const std::string& path, const Camera& camera, const Map& map);
 
+// For before a long run. Throws InputError where saveMap to `path` could not succeed: something other than a file
+// stands there, its folder is not there, or nothing can be written in it.
+void requireMapCanBeSaved(const std::string& path);
+
 // Throws InputError where there is no such file, it is no map that decodeMap takes, it has no keyframe, or was made
 // with another calibration than `camera`.
 Map loadMap(const std::string& path, const Camera& camera);
