@@ -32,11 +32,14 @@ struct TrackerOptions {
   SparseAlignmentOptions alignment;
   MapReuseOptions map_reuse;
   KeyframeOptions keyframes;
-  int fewest_tracks = 30;            // fewer are not enough to start a map with
-  double restart_share = 0.5;        // of the first frame's tracks: fewer left, and the initialisation starts anew
-  int outlier_frames = 4;            // a track whose map point misses the pose so often in a row is dropped
-  double regain_inlier_share = 0.6;  // of the first pose after a loss or blur: of the map points in view ...
-  double regain_points_share = 0.3;  // ... and of those that the last good pose had
+  int fewest_tracks = 30;      // fewer are not enough to start a map with
+  double restart_share = 0.5;  // of the first frame's tracks: fewer left, and the initialisation starts anew
+  int outlier_frames = 4;      // a track whose map point misses the pose so often in a row is dropped
+  // The first pose after a loss or blur needs a good part of the points that the last good pose had ...
+  double regain_points_share = 0.7;
+  // ... or fewer of them, where these are most of the map points in view.
+  double regain_fewest_points_share = 0.3;
+  double regain_inlier_share = 0.6;
   double regain_seconds = 0.7;       // so long after a loss the last tracked frame's points are still looked for
   double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed
 };
