@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +20,7 @@ struct Outcome {
   int exit_code = -1;    // -1: ended by a signal
   std::string output;    // standard output
   std::string messages;  // standard error
+  long peak_memory_kb = 0;
 
   // Lines of the standard error that are a failure's message.
   std::vector<std::string> failures() const {
@@ -51,8 +53,9 @@ inline Outcome runCommand(const std::vector<std::string>& command) {
   posix_spawn_file_actions_destroy(&files);
   if (error != 0) throw std::runtime_error(command[0] + " cannot be started");
   int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) continue;
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, fileContent(output), fileContent(messages)};
+  rusage used{};
+  while (wait4(process, &status, 0, &used) < 0 && errno == EINTR) continue;
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, fileContent(output), fileContent(messages), used.ru_maxrss};
 }
 
 inline Outcome runProgram(std::vector<std::string> arguments) {
