@@ -42,6 +42,8 @@ Pose impliedPose(const Map& map, const JudgedLoop& loop) {
          Pose{candidate_S_current.rotation, candidate_S_current.translation};
 }
 
+double degreesOf(double radians) { return radians * 180 / M_PI; }
+
 bool fewerInliers(const JudgedLoop& a, const JudgedLoop& b) {
   if (a.accepted != b.accepted) return b.accepted;
   return a.verification.inliers < b.verification.inliers;
@@ -80,7 +82,7 @@ LoopOutcome LoopClosing::addKeyframe(const Map& map) {
 
   std::vector<double> scores(static_cast<std::size_t>(outcome.current), kNoScore);
   for (const auto& [id, known] : known_) {
-    if (id != outcome.current && known.signature)
+    if (id != outcome.current && known.signature && withinDrift(map, outcome.current, id))
       scores[static_cast<std::size_t>(id)] = score(*known.signature, *current);
   }
   const LoopDetection detection = detectLoops(map, outcome.current, scores, options_.detection);
@@ -129,6 +131,21 @@ double LoopClosing::score(const EdgeSignature& a, const EdgeSignature& b) const 
   return (1 - options_.thumbnail_weight) * paper + options_.thumbnail_weight * thumbnail;
 }
 
+// Far from what drift can explain a place only looks alike, and would take a candidate's place from the true one.
+bool LoopClosing::withinDrift(const Map& map, KeyframeId current, KeyframeId earlier) const {
+  const Pose& world_T_earlier = keyframeOf(map, earlier).world_T_camera;
+  const Pose& world_T_current = keyframeOf(map, current).world_T_camera;
+  const double turn = degreesOf(rotationAngle(world_T_earlier.rotation, world_T_current.rotation));
+  if (turn > options_.largest_turn_deg + options_.largest_view_turn_deg) return false;
+  const double apart = (world_T_earlier.translation - world_T_current.translation).norm();
+  return apart <
+         allowedMove(map, current, earlier) + std::max(sceneDistance(map, earlier), sceneDistance(map, current));
+}
+
+double LoopClosing::allowedMove(const Map& map, KeyframeId current, KeyframeId earlier) const {
+  return options_.largest_drift * (wayBetween(map, earlier, current) + sceneDistance(map, earlier));
+}
+
 JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCandidate& candidate) const {
   JudgedLoop judged;
   judged.keyframe = candidate.keyframe;
@@ -144,13 +161,12 @@ JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCand
   const Pose& world_T_current = keyframeOf(map, current).world_T_camera;
   const Similarity candidate_S_current = judged.verification.current_S_candidate.inverse();
   const double turn =
-      rotationAngle(world_T_candidate.rotation * candidate_S_current.rotation, world_T_current.rotation);
+      degreesOf(rotationAngle(world_T_candidate.rotation * candidate_S_current.rotation, world_T_current.rotation));
   const double move = (world_T_candidate * candidate_S_current.translation - world_T_current.translation).norm();
-  const double allowed =
-      options_.largest_drift * (wayBetween(map, candidate.keyframe, current) + sceneDistance(map, candidate.keyframe));
+  const double allowed = allowedMove(map, current, candidate.keyframe);
   char text[160];
-  if (turn * 180.0 / M_PI > options_.largest_turn_deg) {
-    std::snprintf(text, sizeof(text), "would turn the keyframe by %.0f deg", turn * 180.0 / M_PI);
+  if (turn > options_.largest_turn_deg) {
+    std::snprintf(text, sizeof(text), "would turn the keyframe by %.0f deg", turn);
     judged.reason = text;
   } else if (move > allowed) {
     std::snprintf(text, sizeof(text), "would move the keyframe by %.2f, over %.2f that drift can", move, allowed);

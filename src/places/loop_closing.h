@@ -24,9 +24,10 @@ struct LoopClosingOptions {
   LoopDetectionOptions detection;
   LoopVerificationOptions verification;
   LoopCorrectionOptions correction;
-  double largest_turn_deg = 25;  // a loop that would turn the keyframe by more is no drift [deg]
-  double largest_drift = 0.2;    // nor one that would move it by over this share of the way since ...
-  int pause_keyframes = 5;       // after a loop no other one is looked for, for so many keyframes
+  double largest_turn_deg = 25;       // a loop that would turn the keyframe by more is no drift [deg]
+  double largest_drift = 0.2;         // nor one that would move it by over this share of the way since ...
+  double largest_view_turn_deg = 35;  // between two looks at one place that still look alike [deg]
+  int pause_keyframes = 5;            // after a loop no other one is looked for, for so many keyframes
   std::uint64_t seed = 1;
 };
 
@@ -65,6 +66,8 @@ class LoopClosing {
 
   void describeNew(const Map& map);
   double score(const EdgeSignature& a, const EdgeSignature& b) const;
+  bool withinDrift(const Map& map, KeyframeId current, KeyframeId earlier) const;
+  double allowedMove(const Map& map, KeyframeId current, KeyframeId earlier) const;
   JudgedLoop judge(const Map& map, KeyframeId current, const LoopCandidate& candidate) const;
 
   Camera camera_;

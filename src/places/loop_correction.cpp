@@ -32,10 +32,12 @@ PoseGraph graphOf(const Map& map, KeyframeId current, KeyframeId candidate, cons
   }
   for (const Keyframe& keyframe : map.keyframes) {
     const std::vector<int> shared = sharedPoints(map, keyframe.id);
+    const int most = *std::max_element(shared.begin(), shared.end());
+    const double needed = std::max<double>(options.covisible_points, options.covisible_share * most);
     for (const Keyframe& other : map.keyframes) {
       if (other.id >= keyframe.id) break;
       const bool consecutive = nodeOf(other.id) + 1 == nodeOf(keyframe.id);
-      if (!consecutive && shared[static_cast<std::size_t>(other.id)] < options.covisible_points) continue;
+      if (!consecutive && shared[static_cast<std::size_t>(other.id)] < needed) continue;
       const Pose from_T_to = other.world_T_camera.inverse() * keyframe.world_T_camera;
       graph.edges.push_back({nodeOf(other.id), nodeOf(keyframe.id), similarityOf(from_T_to), 1.0});
     }

@@ -11,11 +11,12 @@
 namespace edgeslam {
 
 struct LoopCorrectionOptions {
-  int covisible_points = 30;  // shared points that make an edge of the pose graph
-  double loop_weight = 10;    // of the loop against that of an edge between covisible keyframes
-  int iterations = 30;        // of the pose graph
-  int neighbours = 4;         // of the current keyframe in which the old side's points are looked for too
-  double largest_move = 4;    // a point found farther across its edge from where it should be is not taken [px]
+  int covisible_points = 30;      // shared points that make an edge of the pose graph ...
+  double covisible_share = 0.15;  // ... and this share of the most that any keyframe shares: few may be wrong ones
+  double loop_weight = 10;        // of the loop against that of an edge between covisible keyframes
+  int iterations = 30;            // of the pose graph
+  int neighbours = 4;             // of the current keyframe in which the old side's points are looked for too
+  double largest_move = 4;        // a point found farther across its edge from where it should be is not taken [px]
 };
 
 // A value that mapping applies to the map that it was made from, grown since or not.

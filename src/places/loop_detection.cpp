@@ -26,11 +26,26 @@ double barOf(const Map& map, KeyframeId current, const std::vector<double>& scor
 
 }  // namespace
 
+std::vector<char> mayCloseLoop(const Map& map, KeyframeId current, const LoopDetectionOptions& options) {
+  const std::vector<int> shared = sharedPoints(map, current);
+  const int most = shared.empty() ? 0 : *std::max_element(shared.begin(), shared.end());
+  std::vector<char> may(shared.size(), 0);
+  int without = 0;  // keyframes in a row that share nothing
+  bool left = false;
+  for (std::size_t place = map.keyframes.placeOf(current); place-- > 0;) {
+    const auto id = static_cast<std::size_t>(map.keyframes.atPlace(place).id);
+    without = shared[id] == 0 ? without + 1 : 0;
+    left = left || without > options.recent_keyframes;
+    may[id] = shared[id] == 0 || (left && shared[id] < options.held_share * most);
+  }
+  return may;
+}
+
 LoopDetection detectLoops(const Map& map, KeyframeId current, const std::vector<double>& scores,
                           const LoopDetectionOptions& options) {
   LoopDetection detection;
   detection.bar = barOf(map, current, scores, options);
-  const std::vector<int> shared = sharedPoints(map, current);
+  const std::vector<char> may = mayCloseLoop(map, current, options);
 
   std::vector<LoopCandidate> run;  // consecutive keyframes over the bar
   const auto endRun = [&] {
@@ -44,7 +59,7 @@ LoopDetection detectLoops(const Map& map, KeyframeId current, const std::vector<
   for (KeyframeId k = 0; k < current - options.recent_keyframes; ++k) {
     const double score = scores[static_cast<std::size_t>(k)];
     if (score == kNoScore) continue;
-    if (score > detection.bar && shared[static_cast<std::size_t>(k)] == 0) {
+    if (score > detection.bar && may[static_cast<std::size_t>(k)]) {
       run.push_back({k, score});
     } else {
       endRun();

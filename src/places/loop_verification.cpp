@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <set>
 
+#include "places/loop_search.h"
+
 namespace edgeslam {
 namespace {
 
@@ -88,28 +90,35 @@ std::string text(const char* format, Values... values) {
   return buffer;
 }
 
-}  // namespace
+// What the current side sees too says where the map has it, not where it is.
+void keepOldSide(const Map& map, KeyframeId current, int neighbours, PlaceView& there) {
+  const std::vector<PointId> seen_here = pointsAround(map, current, neighbours);
+  there.points.erase(std::remove_if(there.points.begin(), there.points.end(),
+                                    [&](const PlacePoint& point) {
+                                      return std::binary_search(seen_here.begin(), seen_here.end(), point.id);
+                                    }),
+                     there.points.end());
+}
 
-LoopVerification verifyLoop(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
-                            const LoopVerificationOptions& options, std::uint64_t seed) {
+LoopVerification verifyByDescriptors(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
+                                     const LoopVerificationOptions& options, std::uint64_t seed) {
   LoopVerification result;
   const PlaceView here = placeView(camera, map, current, options.neighbours);
-  const PlaceView there = placeView(camera, map, candidate, options.neighbours);
-  if (!here.images || !there.images) {
-    result.reason = "a keyframe without images";
-    return result;
-  }
+  PlaceView there = placeView(camera, map, candidate, options.neighbours);
+  keepOldSide(map, current, options.neighbours, there);
   const std::vector<PlaceCorrespondence> described = descriptorPairs(map, here, there, options);
   result.descriptor_pairs = static_cast<int>(described.size());
   const SimilarityEstimate first = estimateSimilarity(
       camera, described, options.outlier, options.fewest_descriptor_inliers, options.ransac_iterations, seed);
   result.descriptor_inliers = first.inlier_count;
+  result.inliers = first.inlier_count;
+  result.current_S_candidate = first.current_S_candidate;
   if (!first.found) {
     result.reason = text("descriptors: %d of %d agree, %d needed", first.inlier_count, result.descriptor_pairs,
                          options.fewest_descriptor_inliers);
     return result;
   }
-  result.current_S_candidate = first.current_S_candidate;
+  result.inliers = 0;
 
   // Patches, twice: what the first round finds makes the prediction good enough for a narrow search.
   GuidedMatches guided;
@@ -155,6 +164,26 @@ LoopVerification verifyLoop(const Camera& camera, const Map& map, KeyframeId cur
     result.reason = text("%d inliers of %d needed, %.0f %% of the points in view", result.inliers,
                          result.needed_inliers, 100 * result.found_share);
   }
+  return result;
+}
+
+}  // namespace
+
+LoopVerification verifyLoop(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
+                            const LoopVerificationOptions& options, std::uint64_t seed) {
+  LoopVerification result;
+  if (!map.keyframes[current].images || !map.keyframes[candidate].images) {
+    result.reason = "a keyframe without images";
+    return result;
+  }
+  const LoopVerification descriptors = verifyByDescriptors(camera, map, current, candidate, options, seed);
+  result = verifyLoopBySearch(camera, map, current, candidate, descriptors, options.search);
+  const double scale = result.current_S_candidate.scale;
+  if (result.accepted && !(scale < options.largest_scale && scale > 1 / options.largest_scale)) {
+    result.accepted = false;
+    result.reason = text("a change of scale by %.2f", scale);
+  }
+  result.reason = descriptors.reason + "; by search: " + result.reason;
   return result;
 }
 

@@ -1,15 +1,52 @@
 // P26: is a candidate the same place? 3D-3D correspondences, a similarity by Horn's method in RANSAC, refined on
-// reprojection errors, and enough points that agree. A wrong loop is worse than none: every doubt refuses.
+// reprojection errors, and enough points that agree; then a guided search that every loop must pass, and which in bare
+// scenes does without descriptors. A wrong loop is worse than none: every doubt refuses.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "edges/edge_detection.h"
 #include "places/guided_matching.h"
+#include "places/guided_search.h"
 #include "places/keyframe_matching.h"
 
 namespace edgeslam {
+
+// Of the guided search: what the loop's old side shows is only a part of what is in view by now.
+inline GuidedSearchOptions boundsOfLoops() {
+  GuidedSearchOptions search;
+  search.bare_inlier_share = 0.5;
+  search.bare_corner_share = 0.4;
+  search.explained_share = 0.3;
+  return search;
+}
+
+// Of the guided search that every loop must pass (places/loop_search.h).
+struct LoopSearchOptions {
+  GuidedSearchOptions search = boundsOfLoops();
+  EdgeOptions edges;
+  double least_correlation = 0.3;  // of the thumbnails, for starts by their turn
+  double screened_share = 0.25;    // of the points in view that must agree roughly at the first look
+  double found_and_explained = 1;  // least sum of the shares of the points found and of the edges explained
+  int fewest_rough_inliers = 8;    // of the descriptors, for a start by their similarity
+  int refined_poses = 3;           // most poses that are followed up from there
+  int scale_neighbours = 4;        // keyframes whose points join those of the current one
+  double pair_across = 2;         // points of both sides so near in the image are one piece of edge: across it [px] ...
+  double pair_along = 6;          // ... in all [px] ...
+  double pair_dot = 0.9;          // ... and with its normal, dot product
+  double depth_deviation = 0.05;  // of both maps' shapes, share of the distance
+  int fewest_pairs = 20;
+  double agreeing_share = 0.6;     // of the pairs that must agree on the scale
+  double scale_deviation = 0.03;   // largest standard error of its logarithm
+  int witnesses = 4;               // keyframes before the current one that are located too ...
+  int fewest_witnesses = 2;        // ... of which so many must be found, and none elsewhere:
+  int descriptors_count = 2;       // ... and descriptors that are enough by themselves are so many;
+  double witness_turn_deg = 2;     // [deg]
+  double witness_distance = 0.05;  // share of the scene's distance
+  double witness_scale = 0.05;     // of the scale's logarithm
+};
 
 struct LoopVerificationOptions {
   KeyframeMatchingOptions matching;
@@ -26,6 +63,7 @@ struct LoopVerificationOptions {
   double least_found_share = 0.4;      // of the points that should be visible, this share must be found and agree
   int fewest_cells = 5;                // of the image's 16 parts, so many must hold inliers
   double largest_scale = 2;            // of the similarity, or its inverse
+  LoopSearchOptions search;
 };
 
 struct LoopVerification {

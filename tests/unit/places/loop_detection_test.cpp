@@ -98,6 +98,22 @@ TEST(LoopDetection, KeyframesThatShareAPointAreNoCandidates) {
   EXPECT_TRUE(detectLoops(map, 30, scores, {}).candidates.empty());
 }
 
+// Map reuse finds some of an old place's points before the loop is closed.
+TEST(LoopDetection, AFewPointsMetAgainDoNotHideALoop) {
+  Map map = keyframesOnly(31);
+  std::vector<double> scores = usualScores();
+  for (const std::size_t k : {6u, 7u, 8u}) scores[k] = 0.8;
+  for (int i = 0; i < 40; ++i) share(map, 29, 30);
+  for (int i = 0; i < 5; ++i) share(map, 6, 30);
+  EXPECT_EQ(detectLoops(map, 30, scores, {}).candidates.size(), 1u);
+  Map held = map;
+  for (int i = 0; i < 2; ++i) share(held, 6, 30);
+  EXPECT_TRUE(detectLoops(held, 30, scores, {}).candidates.empty());
+  Map never_left = map;
+  for (KeyframeId k = 9; k < 29; ++k) share(never_left, k, 30);
+  EXPECT_TRUE(detectLoops(never_left, 30, scores, {}).candidates.empty());
+}
+
 TEST(LoopDetection, RecentKeyframesAreNoCandidates) {
   const Map map = keyframesOnly(31);
   std::vector<double> scores = usualScores();

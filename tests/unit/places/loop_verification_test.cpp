@@ -83,24 +83,26 @@ TEST_F(LoopVerificationTest, KeyframesWithoutImagesAreRefused) {
   EXPECT_FALSE(verifyLoop(camera, map, kTurn + 1, 1, {}, 1).accepted);
 }
 
-TEST_F(LoopVerificationTest, EachDemandRefuses) {
+TEST_F(LoopVerificationTest, EachDemandOnDescriptorsRefuses) {
   const auto refused = [&](const LoopVerificationOptions& options) {
     return !verifyLoop(camera, *place, kTurn + 1, 1, options, 1).accepted;
   };
-  EXPECT_FALSE(refused({}));
-  LoopVerificationOptions options;
+  LoopVerificationOptions only_descriptors;
+  only_descriptors.search.witnesses = 0;
+  EXPECT_FALSE(refused(only_descriptors));
+  LoopVerificationOptions options = only_descriptors;
   options.fewest_descriptor_inliers = 1000;
   EXPECT_TRUE(refused(options));
-  options = {};
+  options = only_descriptors;
   options.fewest_needed_inliers = options.most_needed_inliers = 1000;
   EXPECT_TRUE(refused(options));
-  options = {};
+  options = only_descriptors;
   options.least_found_share = 1.01;
   EXPECT_TRUE(refused(options));
-  options = {};
+  options = only_descriptors;
   options.fewest_cells = 17;
   EXPECT_TRUE(refused(options));
-  options = {};
+  options = only_descriptors;
   options.largest_scale = 1.00001;
   EXPECT_TRUE(refused(options));
 }

@@ -34,6 +34,9 @@ inline double hashed(std::uint64_t seed, int wall, int column, int row, int what
   return static_cast<double>(h >> 11) / 9007199254740992.0;
 }
 
+// Rooms from this number on have plain walls with a few large tiles.
+constexpr std::uint64_t bare_rooms = 1000;
+
 // Distance to the wall of the room, and the grey value there.
 struct WallHit {
   double distance = 0;
@@ -55,7 +58,8 @@ inline WallHit castRay(std::uint64_t seed, const Eigen::Vector3d& origin, const 
   }
   const Eigen::Vector3d at = origin + hit.distance * ray;
   const int wall = 2 * axis + (ray[axis] > 0 ? 1 : 0);
-  constexpr double tile = 0.3;
+  const bool bare = seed >= bare_rooms;
+  const double tile = bare ? 0.75 : 0.3;
   const double u = at[(axis + 1) % 3] / tile, v = at[(axis + 2) % 3] / tile;
   const int column = static_cast<int>(std::floor(u)), row = static_cast<int>(std::floor(v));
   const double dx = u - column - 0.3 - 0.4 * hashed(seed, wall, column, row, 1);
@@ -64,7 +68,7 @@ inline WallHit castRay(std::uint64_t seed, const Eigen::Vector3d& origin, const 
   const double across = std::abs(std::cos(turn) * dx + std::sin(turn) * dy);
   const double along = std::abs(-std::sin(turn) * dx + std::cos(turn) * dy);
   const bool patch = across < 0.1 + 0.2 * hashed(seed, wall, column, row, 4) && along < 0.3;
-  hit.grey = 40 + 170 * hashed(seed, wall, column, row, patch ? 5 : 6);
+  hit.grey = bare && !patch ? 90 + 20 * wall : 40 + 170 * hashed(seed, wall, column, row, patch ? 5 : 6);
   return hit;
 }
 
