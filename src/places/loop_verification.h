@@ -27,12 +27,12 @@ inline GuidedSearchOptions boundsOfLoops() {
 struct LoopSearchOptions {
   GuidedSearchOptions search = boundsOfLoops();
   EdgeOptions edges;
-  double least_correlation = 0.3;  // of the thumbnails, for starts by their turn
-  double screened_share = 0.25;    // of the points in view that must agree roughly at the first look
-  double found_and_explained = 1;  // least sum of the shares of the points found and of the edges explained
-  int fewest_rough_inliers = 8;    // of the descriptors, for a start by their similarity
-  int refined_poses = 3;           // most poses that are followed up from there
-  int scale_neighbours = 4;        // keyframes whose points join those of the current one
+  double least_correlation = 0.3;     // of the thumbnails, for starts by their turn
+  double screened_share = 0.25;       // of the points in view that must agree roughly at the first look
+  double found_and_explained = 0.95;  // least sum of the shares of the points found and of the edges explained
+  int fewest_rough_inliers = 8;       // of the descriptors, for a start by their similarity
+  int refined_poses = 3;              // most poses that are followed up from there
+  int scale_neighbours = 4;           // keyframes whose points join those of the current one
   double pair_across = 2;         // points of both sides so near in the image are one piece of edge: across it [px] ...
   double pair_along = 6;          // ... in all [px] ...
   double pair_dot = 0.9;          // ... and with its normal, dot product
