@@ -7,6 +7,8 @@
 namespace edgeslam {
 namespace {
 
+constexpr double longest_step_s = 10;  // between successive keyframes of one run
+
 // Two sizes of the patch on either side bridge distances that differ by up to twice; more would only cost.
 DescribedPoints describeAtTwoSizes(const cv::Mat& grey, const std::vector<Eigen::Vector2f>& pixels, double roll) {
   DescribedPoints described = describePoints(grey, pixels, roll);
@@ -24,10 +26,11 @@ Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double secon
   double fastest = 0, farthest = 0;
   for (std::size_t place = 1; place < map.keyframes.size(); ++place) {
     const Keyframe &a = map.keyframes.atPlace(place - 1), &b = map.keyframes.atPlace(place);
-    const double distance = (b.world_T_camera.translation - a.world_T_camera.translation).norm();
     const double elapsed = 1e-9 * static_cast<double>(b.time_ns - a.time_ns);
+    if (elapsed <= 0 || elapsed > longest_step_s) continue;  // between two runs there is no motion to learn from
+    const double distance = (b.world_T_camera.translation - a.world_T_camera.translation).norm();
     farthest = std::max(farthest, distance);
-    if (elapsed > 0) fastest = std::max(fastest, distance / elapsed);
+    fastest = std::max(fastest, distance / elapsed);
   }
   return {world_T_camera.translation, std::max(farthest, 2 * fastest * seconds)};
 }

@@ -143,7 +143,11 @@ bool Tracker::followAndLocate(const TrackedState& from, TrackedState& frame, Sta
   estimate = estimatePose(camera_, view_, frame.tracks, estimate.result.world_T_camera, options_.pose);
   const auto in_view = static_cast<double>(estimate.track_of_observation.size());
   // A flat map fits a scene with depth only here and there: before the map stands no share of inliers is asked for.
-  double fewest_inliers = view_.initialised ? options_.least_inlier_share * in_view : 0.0;
+  double fewest_inliers = 0;
+  if (view_.initialised) {
+    fewest_inliers =
+        std::max(options_.least_inlier_share * in_view, options_.least_points_share * from.pose.inlier_count);
+  }
   if (view_.initialised && lost_since_ns_ >= 0) {
     const double most_of_them =
         std::max(options_.regain_inlier_share * in_view, options_.regain_fewest_points_share * from.pose.inlier_count);

@@ -41,7 +41,8 @@ struct TrackerOptions {
   double regain_fewest_points_share = 0.3;
   double regain_inlier_share = 0.6;
   double regain_seconds = 0.7;       // so long after a loss the last tracked frame's points are still looked for
-  double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed
+  double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed ...
+  double least_points_share = 0.15;  // ... nor with fewer than this share of the points of the pose before
 };
 
 enum class FrameState { initialising, tracking, predicted, lost };
