@@ -199,14 +199,12 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
        "that must fit three views ..."},
       {"recovery.inlier_share", &settings.mapping.recovery.inlier_share, "", 0, 1, "... or this share of the tracks"},
       {"recovery.relocalisation", &settings.relocalisation_enabled, "", 0, 0, "off only to measure what it gains"},
-      {"recovery.relocalisation_interval", &settings.relocalisation_interval, "frames", 1, 1000,
-       "lost frames from one attempt to the next"},
 
       heading("loops", "Loop closing (P23 to P27) and adjustment of the whole map (P20)"),
       {"loops.enabled", &settings.loops.enabled, "", 0, 0, "off only to measure what it gains"},
-      {"loops.global_interval_keyframes", &settings.mapping.global_interval_keyframes, "keyframes", 2, 10000,
+      {"loops.global_interval_keyframes", &settings.places.global_interval_keyframes, "keyframes", 2, 10000,
        "from one adjustment of the whole map to the next ..."},
-      {"loops.global_interval_s", &settings.mapping.global_interval_s, "s", 1, 10000, "... at the latest"},
+      {"loops.global_interval_s", &settings.places.global_interval_s, "s", 1, 10000, "... at the latest"},
 
       heading("bundle", "Solver of the local bundle adjustment"),
       {"bundle.iterations", &bundle.iterations, "", 1, 1000, "most steps"},

@@ -8,30 +8,26 @@ void Mapper::goOnWith(Map map) {
   map_ = std::move(map);
   description_ = "a saved map";
   initialised_ = true;
-  last_global_ = last_meeting_ = map_.keyframes.back().id;
-  last_global_ns_ = map_.keyframes.back().time_ns;
   ++version_;
 }
 
-std::optional<MapView> Mapper::add(const TrackedFrame& frame) {
+bool Mapper::add(const TrackedFrame& frame) {
   if (frame.keyframe == 0) {  // a start, or a new one
     initialised_ = false;
     map_ = Map();
-    last_global_ = 0;
-    last_meeting_ = -1;
     candidates_.clear();
     origin_frame_ = frame.frame_index;
     initialisation_.start(frame);
-    return std::nullopt;
+    return false;
   }
   if (initialised_) {
     if (frame.keyframe < 0) {  // was on its way when the map came to stand
       const std::optional<Pose> pose = initialisation_.locate(frame, early_poses_.back().second);
       if (pose) early_poses_.emplace_back(frame.frame_index, *pose);
-      return std::nullopt;
+      return false;
     }
     addKeyframe(frame);
-    return view();
+    return true;
   }
   const std::string waited_for = initialisation_.waitingFor();
   if (initialisation_.add(frame)) {
@@ -39,12 +35,11 @@ std::optional<MapView> Mapper::add(const TrackedFrame& frame) {
     map_ = initialisation_.map();
     description_ = initialisation_.description();
     early_poses_ = initialisation_.earlyPoses();
-    last_global_ns_ = map_.keyframes.front().time_ns;
   } else if (!initialisation_.changed() && initialisation_.waitingFor() == waited_for) {
-    return std::nullopt;
+    return false;
   }
   ++version_;
-  return view();
+  return true;
 }
 
 void Mapper::addKeyframe(const TrackedFrame& frame) {
@@ -95,34 +90,9 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
   return result;
 }
 
-bool Mapper::metOldMap() {
-  const KeyframeId latest = map_.keyframes.back().id;
-  const std::vector<int> shared = sharedPoints(map_, latest);
-  int old_points = 0;
-  for (KeyframeId old = 0; old + options_.old_keyframes < latest; ++old) {
-    old_points = std::max(old_points, shared[static_cast<std::size_t>(old)]);
-  }
-  if (old_points < options_.old_points) return false;
-  const bool already = last_meeting_ >= 0 && latest - last_meeting_ <= options_.old_keyframes / 4;
-  if (!already) last_meeting_ = latest;
-  return !already;
-}
-
-bool Mapper::adjustAll(bool at_once) {
-  if (!initialised_) return false;
-  const Keyframe& latest = map_.keyframes.back();
-  // A saved map's times may be of another clock.
-  if (latest.time_ns < last_global_ns_) last_global_ns_ = latest.time_ns;
-  const bool due = latest.id - last_global_ >= options_.global_interval_keyframes ||
-                   static_cast<double>(latest.time_ns - last_global_ns_) * 1e-9 >= options_.global_interval_s;
-  if (!due && !at_once) return false;
-  last_global_ = latest.id;
-  last_global_ns_ = latest.time_ns;
-  GlobalAdjustmentOptions adjustment = options_.global_adjustment;
-  if (at_once) adjustment.bundle.iterations = options_.iterations_after_loop;
-  if (!adjustGlobally(camera_, adjustment, options_.local_adjustment, map_)) return false;
+void Mapper::apply(const MapChange& change) {
+  applyChange(change, map_);
   ++version_;
-  return true;
 }
 
 MapView Mapper::view(KeyframeId centre) const {

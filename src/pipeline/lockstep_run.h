@@ -1,17 +1,14 @@
-// The lockstep schedule (design, section 4): tracking and mapping exchange values at fixed frames, so that a run is a
-// pure function of its input.
+// The lockstep schedule (design, section 4): tracking, mapping and places exchange values at fixed frames, so that a
+// run is a pure function of its input.
 #pragma once
 
 #include <deque>
-#include <map>
-#include <string>
+#include <vector>
 
-#include "mapping/mapper.h"
-#include "pipeline/run_result.h"
-#include "pipeline/settings.h"
-#include "places/loop_closing.h"
-#include "places/relocalisation.h"
-#include "tracking/tracker.h"
+#include "pipeline/mapping_worker.h"
+#include "pipeline/places_worker.h"
+#include "pipeline/run_record.h"
+#include "pipeline/tracking_worker.h"
 
 namespace edgeslam {
 
@@ -23,51 +20,44 @@ class LockstepRun {
   // Before the first frame: goes on with a map made earlier, of the same camera. The camera is somewhere in it.
   void goOnWith(Map map);
   // The map as it is now; without keyframes where none stands yet.
-  const Map& map() const { return mapper_.map(); }
+  const Map& map() const { return mapping_.mapper().map(); }
 
   // The next frame, CV_8U of the camera's size. Returns its record, without the final pose.
   const FrameRecord& process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey);
   // A frame that could not be read.
   const FrameRecord& skip(std::int64_t index, std::int64_t time_ns, const std::string& problem);
-  // Final poses, carried by their keyframes, and the map. Call once, at the end.
+  // Lets mapping and places come to their end, after the last frame: map() is final then.
+  void settle();
+  // Final poses, carried by their keyframes, and the map. Call once, at the end; settles.
   RunResult finish();
 
  private:
-  struct DueView {
+  struct DueUpdate {
     std::int64_t due = 0;  // count of frames processed at which it is taken
-    MapView view;
+    MapUpdate update;
+  };
+  struct DueSnapshot {
+    std::int64_t due = 0;  // count of keyframes before which its correction is applied
+    Snapshot snapshot;
   };
 
-  void takeDueViews();
-  void hand(const std::vector<TrackedFrame>& frames, FrameRecord& record);
-  void lookForLoop(FrameRecord& record);
-  void findAgain(FrameRecord& record);
-  void goOnFrom(FrameRecord& record, TrackingState state, const Pose& world_T_camera, const Matrix6d& covariance,
-                KeyframeId centre, const std::vector<FoundAgain>& points);
-  void tell(const FrameRecord& record, const std::string& event);
-  FrameRecord& record(std::int64_t index, std::int64_t time_ns, const TrackingOutcome& outcome);
+  void takeDueUpdates();
+  void hand(const MappingMessage& message);
+  void applyDueCorrections(std::int64_t keyframes);
+  void remember(std::optional<MapUpdate> update);
   void draw(const cv::Mat& grey, const FrameRecord& record);
-  std::optional<Pose> finalPose(KeyframeId reference, Pose reference_T_camera) const;
 
   Settings settings_;
-  Tracker tracker_;
-  Mapper mapper_;
-  Relocalisation relocalisation_;
-  LoopClosing loop_closing_;
-  int lost_frames_ = 0;  // in a row
-  std::optional<Pose> last_good_pose_;
-  std::int64_t last_good_ns_ = 0;
-  KeyframeId first_keyframe_ = 0;  // of this run
-  RunResult result_;
-  std::deque<DueView> views_;
-  std::int64_t processed_ = 0;
+  TrackingWorker tracking_;
+  MappingWorker mapping_;
+  PlacesWorker places_;
+  RunRecord record_;
+  std::vector<MappingMessage> messages_;  // of the current frame
+  std::deque<DueUpdate> updates_;
+  std::deque<DueSnapshot> snapshots_;
+  std::int64_t processed_ = 0;  // frames
+  std::int64_t keyframes_ = 0;  // handed to places
   std::int64_t drawing_interval_ = 100;
-  struct CarriedPose {
-    KeyframeId reference = -1;  // the keyframe that carries the frame's pose, or -1
-    Pose reference_T_camera;
-  };
-  std::deque<CarriedPose> carried_;  // by frame record
-  std::map<KeyframeId, CulledKeyframe> culled_;
 };
 
 }  // namespace edgeslam

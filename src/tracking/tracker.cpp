@@ -302,10 +302,15 @@ void Tracker::remember(TrackedState frame) {
   last_ = std::move(frame);
 }
 
+TrackedFrame Tracker::keepLostFrame() {
+  kept_ = lost_;
+  return describe(kept_, next_keyframe_++, "recovery");
+}
+
 void Tracker::resume(const MapView& view, const Pose& world_T_camera, const Matrix6d& covariance,
                      const std::vector<FoundAgain>& points) {
-  TrackedState frame = std::move(lost_);
-  lost_ = TrackedState();
+  TrackedState frame = std::move(kept_);
+  kept_ = TrackedState();
   if (!points.empty()) frame.tracks.clear();
   for (const FoundAgain& found : points) {
     Track track;
@@ -321,7 +326,7 @@ void Tracker::resume(const MapView& view, const Pose& world_T_camera, const Matr
   frame.world_T_camera = world_T_camera;
   frame.pose.covariance = covariance;
   view_ = view;
-  next_keyframe_ = view.keyframes.back().id + 1;
+  next_keyframe_ = std::max(next_keyframe_, view.keyframes.back().id + 1);
   last_ = std::move(frame);
   last_T_next_ = Pose();
   interval_ns_ = 0;

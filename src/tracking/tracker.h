@@ -85,13 +85,12 @@ class Tracker {
   // An unreadable frame: a pose from motion alone.
   TrackingOutcome skip(std::int64_t time_ns, const std::string& reason) const;
 
-  // The last frame where its pose was lost: its images, edges, and its tracks without a pose. Valid until the next
-  // frame.
+  // The last frame where its pose was lost is kept until another one is; gives its images and its tracks without a
+  // pose, and the keyframe number that is its if mapping makes it one.
   bool hasLostFrame() const { return lost_.images != nullptr; }
-  const FrameImages& lostImages() const { return *lost_.images; }
-  const EdgeMap& lostEdges() const { return lost_.edges; }
-  TrackedFrame lostFrame(KeyframeId keyframe) const { return describe(lost_, keyframe, ""); }
-  // The lost frame's pose was found after all: tracking goes on from it with the points found, or, where none are
+  TrackedFrame keepLostFrame();
+  const EdgeMap& keptEdges() const { return kept_.edges; }
+  // The kept frame's pose was found after all: tracking goes on from it with the points found, or, where none are
   // given, with the tracks that it had. `view` shows the map around it.
   void resume(const MapView& view, const Pose& world_T_camera, const Matrix6d& covariance,
               const std::vector<FoundAgain>& points);
@@ -128,6 +127,7 @@ class Tracker {
   MapView view_;
   BlurGate blur_gate_;
   TrackedState lost_;                // the current frame where its pose was not found
+  TrackedState kept_;                // a lost frame that others look for
   std::int64_t lost_since_ns_ = -1;  // -1: not lost
   TrackedState last_;                // the last frame that was tracked
   Pose last_T_next_;                 // motion from the last tracked frame to the next, one frame interval ahead

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <opencv2/core.hpp>
 
 #include "map/map_file.h"
 

@@ -1,5 +1,5 @@
-// The mapper from keyframe to keyframe: recovery, adjustment of the whole map when it is due, old parts met again, and
-// culled keyframes handed out.
+// The mapper from keyframe to keyframe: the start, recovery, changes of the map as a whole, and culled keyframes handed
+// out.
 #include "mapping/mapper.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "map/map_check.h"
-#include "unit/mapping/edge_scene.h"
+#include "unit/mapping/frames_of_a_scene.h"
 
 namespace edgeslam::test {
 namespace {
@@ -15,15 +15,7 @@ namespace {
 const Camera camera = testCamera(CameraModel::pinhole_radial_tangential);
 
 TrackedFrame seen(const EdgeScene& scene, const Pose& world_T_camera, std::int64_t frame_index, KeyframeId keyframe) {
-  Random random(1);
-  TrackedFrame frame;
-  frame.frame_index = frame_index;
-  frame.time_ns = 33'333'333 * frame_index;
-  frame.world_T_camera = world_T_camera;
-  frame.observations = observeAll(camera, scene, world_T_camera, Sight(), random);
-  frame.keyframe = keyframe;
-  frame.reason = "interval";
-  return frame;
+  return test::seen(camera, scene, world_T_camera, frame_index, keyframe);
 }
 
 Pose sideways(int i) { return {rotationExp({0.002 * i, -0.002 * i, 0.002 * i}), {0.05 * i, 0.01 * i, 0.01 * i}}; }
@@ -42,36 +34,12 @@ Mapper started(MapperOptions options = {}) {
   return mapper;
 }
 
-// Started, and then in a map that is known: keyframes at these poses, whose world is the scene's.
+// In a map that is known: keyframes at these poses, whose world is the scene's.
 Mapper mapperIn(const EdgeScene& scene, const std::vector<Pose>& poses, const MapperOptions& options = {}) {
-  Mapper mapper = started(options);
-  Random random(2);
-  Map made = keyframesOf(camera, scene, poses, Sight(), random);
-  addAllPoints(scene, made);
-  mapper.correct([&](Map& map) { map = made; });
+  Mapper mapper(camera, options);
+  mapper.goOnWith(mapFrom(camera, scene, poses));
   return mapper;
 }
-
-Pose at(double x, double y = 0, double turn = 0) { return {rotationExp({0, turn, 0}), {x, y, 0}}; }
-
-std::vector<Pose> row(int count, double spacing) {
-  std::vector<Pose> poses;
-  for (int k = 0; k < count; ++k) poses.push_back(at(spacing * k));
-  return poses;
-}
-
-// A wall along x so long that its ends never are in view together.
-EdgeScene longWall(double length, int count) {
-  Random random(3);
-  EdgeScene scene;
-  for (int i = 0; i < count; ++i) {
-    const double x = length * (i + uniform(random, 0, 1)) / count - 3;
-    scene.points.push_back({{x, uniform(random, -2, 2), uniform(random, 4, 6)}, direction(random), i, 0, true});
-  }
-  return scene;
-}
-
-double distance(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }
 
 TEST(Mapper, TheStartGivesAMapAndPosesOfTheFramesBefore) {
   const Mapper mapper = started();
@@ -92,7 +60,7 @@ TEST(Mapper, AFirstFrameStartsAnew) {
   EXPECT_TRUE(mapper.map().points.empty());
   EXPECT_EQ(mapper.view().origin_frame, 200);
   EXPECT_GE(mapper.view().version, version);
-  EXPECT_FALSE(mapper.adjustAll(/*at_once=*/true));
+  EXPECT_FALSE(mapper.recover(seen(framesOnAWall(22), Pose(), 201, 1)).found);
 }
 
 TEST(Mapper, TrackingsKeyframeNumbersAreKeptAndNeverGoBack) {
@@ -105,9 +73,19 @@ TEST(Mapper, TrackingsKeyframeNumbersAreKeptAndNeverGoBack) {
   ASSERT_TRUE(mapper.add(seen(scene, at(0.5), 110, 9)));
   EXPECT_EQ(mapper.map().keyframes.back().id, 18);
   EXPECT_EQ(mapProblem(camera, mapper.map()), "");
-  // A frame that was on its way when the map came to stand is no keyframe.
-  EXPECT_FALSE(mapper.add(seen(scene, at(0.6), 120, -1)));
-  EXPECT_EQ(mapper.map().keyframes.back().id, 18);
+}
+
+TEST(Mapper, AFrameThatWasOnItsWayWhenTheMapCameToStandIsNoKeyframe) {
+  Mapper mapper = started();
+  ASSERT_TRUE(mapper.initialised());
+  const KeyframeId latest = mapper.map().keyframes.back().id;
+  const std::uint64_t version = mapper.view().version;
+  const std::int64_t next = mapper.map().keyframes.back().frame_index + 1;
+  const std::size_t early_poses = mapper.earlyPoses().size();
+  EXPECT_FALSE(mapper.add(seen(framesOnAWall(21), sideways(static_cast<int>(next)), next, -1)));
+  EXPECT_EQ(mapper.map().keyframes.back().id, latest);
+  EXPECT_EQ(mapper.view().version, version);
+  EXPECT_EQ(mapper.earlyPoses().size(), early_poses + 1) << "but it has a pose";
 }
 
 TEST(Mapper, EveryKeyframeGivesANewerView) {
@@ -115,25 +93,46 @@ TEST(Mapper, EveryKeyframeGivesANewerView) {
   Mapper mapper = mapperIn(scene, row(4, 0.1));
   std::uint64_t version = mapper.view().version;
   for (KeyframeId id = 4; id < 8; ++id) {
-    const std::optional<MapView> view = mapper.add(seen(scene, at(0.1 * id), 10 * id, id));
-    ASSERT_TRUE(view);
-    EXPECT_GT(view->version, version);
-    EXPECT_EQ(view->keyframes.back().id, id);
-    EXPECT_LT(distance(view->keyframes.back().world_T_camera, at(0.1 * id)), 1e-3);
-    version = view->version;
+    ASSERT_TRUE(mapper.add(seen(scene, at(0.1 * id), 10 * id, id)));
+    const MapView view = mapper.view();
+    EXPECT_GT(view.version, version);
+    EXPECT_EQ(view.keyframes.back().id, id);
+    EXPECT_LT(distance(view.keyframes.back().world_T_camera, at(0.1 * id)), 1e-3);
+    version = view.version;
   }
+}
+
+TEST(Mapper, AChangeOfTheWholeMapIsAppliedToWhatCameSinceToo) {
+  const EdgeScene scene = framesOnAWall(23);
+  Mapper mapper = mapperIn(scene, row(4, 0.1));
+  const Map copy = mapper.map();
+  ASSERT_TRUE(mapper.add(seen(scene, at(0.4), 40, 4)));
+  const Map before = mapper.map();
+  const std::uint64_t version = mapper.view().version;
+  const Pose move{rotationExp({0.1, -0.2, 0.3}), {1, 2, 3}};
+  Map corrected = copy;
+  for (Keyframe& keyframe : corrected.keyframes) keyframe.world_T_camera = move * keyframe.world_T_camera;
+  mapper.apply(changeOf(copy, corrected));
+  EXPECT_GT(mapper.view().version, version);
+  EXPECT_EQ(mapProblem(camera, mapper.map()), "");
+  for (const Keyframe& keyframe : mapper.map().keyframes) {
+    const Pose& was = (keyframe.id < 4 ? copy : before).keyframes[keyframe.id].world_T_camera;
+    EXPECT_LT(distance(keyframe.world_T_camera, move * was), 1e-9) << keyframe.id;
+  }
+  // And mapping goes on in it.
+  ASSERT_TRUE(mapper.add(seen(scene, move * at(0.5), 50, 5)));
+  EXPECT_EQ(mapper.view().keyframes.back().id, 5);
 }
 
 TEST(Mapper, RecoveryGivesTheLostFrameItsPoseAndMapsItsTracksOnce) {
   const EdgeScene scene = framesOnAWall(24);
-  Mapper mapper = mapperIn(scene, {at(-0.3), at(-0.25, 0.02, 0.07), at(0)});
+  Map before = mapFrom(camera, scene, {at(-0.3), at(-0.25, 0.02, 0.07), at(0)});
   // The map knows a third of the points only; the others are tracks without a depth.
-  mapper.correct([](Map& map) {
-    for (auto point = map.points.begin(); point != map.points.end();) {
-      point = point->first % 3 == 0 ? std::next(point) : map.points.erase(point);
-    }
-  });
-  const Map before = mapper.map();
+  for (auto point = before.points.begin(); point != before.points.end();) {
+    point = point->first % 3 == 0 ? std::next(point) : before.points.erase(point);
+  }
+  Mapper mapper(camera, MapperOptions());
+  mapper.goOnWith(before);
   const std::uint64_t version = mapper.view().version;
   const Pose truth = at(0.22, -0.06, -0.05);
   TrackedFrame lost = seen(scene, truth, 70, 6);
@@ -195,76 +194,6 @@ TEST(Mapper, RecoveryRefusedSaysWhyAndLeavesTheMapAlone) {
   EXPECT_EQ(mapper.view().version, version);
   EXPECT_EQ(mapper.map().keyframes.size(), 3U);
   EXPECT_EQ(mapper.map().points.size(), points);
-}
-
-TEST(Mapper, TheWholeMapIsAdjustedEverySoManyKeyframes) {
-  const EdgeScene scene = framesOnAWall(25);
-  MapperOptions options;
-  options.global_interval_keyframes = 5;
-  options.global_interval_s = 1e6;
-  Mapper mapper = mapperIn(scene, row(4, 0.05), options);
-  std::vector<KeyframeId> adjusted;
-  for (KeyframeId id = 4; id < 17; ++id) {
-    mapper.add(seen(scene, at(0.05 * id), 10 * id, id));
-    const std::uint64_t version = mapper.view().version;
-    const bool changed = mapper.adjustAll(/*at_once=*/false);
-    EXPECT_EQ(mapper.view().version > version, changed);
-    if (changed) adjusted.push_back(id);
-  }
-  EXPECT_EQ(adjusted, (std::vector<KeyframeId>{5, 10, 15}));
-}
-
-TEST(Mapper, TheWholeMapIsAdjustedEverySoManySeconds) {
-  const EdgeScene scene = framesOnAWall(25);
-  MapperOptions options;
-  options.global_interval_keyframes = 1000;
-  options.global_interval_s = 4.9;
-  Mapper mapper = mapperIn(scene, row(4, 0.05), options);
-  std::vector<int> adjusted;  // at which second
-  for (int second = 1; second < 14; ++second) {
-    mapper.add(seen(scene, at(0.2 + 0.02 * second), 30 * second + 1, 3 + second));
-    if (mapper.adjustAll(/*at_once=*/false)) adjusted.push_back(second);
-  }
-  EXPECT_EQ(adjusted, (std::vector<int>{5, 10}));
-}
-
-TEST(Mapper, TheWholeMapIsAdjustedAtOnceAndThenNotUntilItIsDueAgain) {
-  const EdgeScene scene = framesOnAWall(25);
-  MapperOptions options;
-  options.global_interval_keyframes = 3;
-  Mapper mapper = mapperIn(scene, row(3, 0.1), options);
-  ASSERT_FALSE(mapper.adjustAll(false));
-  mapper.correct([](Map& map) { map.keyframes[1].world_T_camera.translation.y() += 0.01; });
-  EXPECT_TRUE(mapper.adjustAll(true));
-  EXPECT_LT(distance(mapper.map().keyframes[1].world_T_camera, at(0.1)), 0.002) << "brought back";
-  mapper.add(seen(scene, at(0.3), 30, 3));
-  mapper.add(seen(scene, at(0.4), 40, 4));
-  EXPECT_FALSE(mapper.adjustAll(false)) << "2 keyframes after the last time";
-  mapper.add(seen(scene, at(0.5), 50, 5));
-  EXPECT_TRUE(mapper.adjustAll(false));
-}
-
-TEST(Mapper, AnOldPartIsMetOnceAMeetingAndAgainLater) {
-  const EdgeScene scene = longWall(80, 1600);
-  MapperOptions options;
-  options.old_keyframes = 8;
-  Mapper mapper = mapperIn(scene, row(3, 1.5), options);
-  std::vector<KeyframeId> met;
-  const auto walk = [&](double from, int steps) {
-    for (int step = 0; step < steps; ++step) {
-      const KeyframeId id = mapper.map().keyframes.back().id + 1;
-      mapper.add(seen(scene, at(from + 1.5 * step), 10 * id, id));
-      if (mapper.metOldMap()) met.push_back(id);
-    }
-  };
-  walk(4.5, 12);
-  EXPECT_TRUE(met.empty()) << "a map that only goes on";
-  walk(1, 3);  // keyframes 15 to 17, at the start
-  EXPECT_EQ(met, (std::vector<KeyframeId>{15}));
-  walk(40, 12);
-  EXPECT_EQ(met.size(), 1U) << "new land";
-  walk(41, 3);  // keyframes 30 to 32, where 18 was
-  EXPECT_EQ(met, (std::vector<KeyframeId>{15, 30}));
 }
 
 TEST(Mapper, CulledKeyframesAreHandedOutOnceInTheirOrder) {

@@ -1,6 +1,8 @@
 // Track loss and what follows, through tracking, mapping and places together, on simulated recordings.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "dataset/evaluation.h"
 #include "dataset/simulator.h"
 #include "pipeline/lockstep_run.h"
@@ -15,7 +17,7 @@ struct CoveredRun {
   Trajectory estimate, truth;
 };
 
-CoveredRun runWithCoveredLens() {
+CoveredRun makeRun() {
   SimulationOptions options;
   options.scene = SceneKind::panels_textured;
   options.frames = frame_count;
@@ -37,8 +39,13 @@ CoveredRun runWithCoveredLens() {
   return run;
 }
 
+const CoveredRun& runWithCoveredLens() {
+  static const CoveredRun run = makeRun();
+  return run;
+}
+
 TEST(FoundAgain, AfterACoveredLensPosesGoOnInTheSameWorld) {
-  const CoveredRun run = runWithCoveredLens();
+  const CoveredRun& run = runWithCoveredLens();
   int covered_good = 0, after_good = 0;
   for (const FrameRecord& frame : run.result.frames) {
     if (frame.index >= covered_from + 1 && frame.index < covered_from + covered_for)
@@ -52,8 +59,31 @@ TEST(FoundAgain, AfterACoveredLensPosesGoOnInTheSameWorld) {
   EXPECT_LT(error.translation.max, 0.05) << "one world before and after [m]";
 }
 
+// The answer comes view_delay_frames later: the frame that was asked for has no pose at the time, but a final one, and
+// the next frame tracked tells how it was found.
+TEST(FoundAgain, TheFrameThatWasFoundHasAFinalPoseAndTheNextOneTellsHow) {
+  const CoveredRun& run = runWithCoveredLens();
+  const RunResult& result = run.result;
+  ASSERT_GE(result.recoveries + result.relocalisations, 1);
+  int told = 0;
+  for (const FrameRecord& frame : result.frames) {
+    if (frame.state != TrackingState::recovered && frame.state != TrackingState::relocalised) continue;
+    ++told;
+    const FrameRecord& found = result.frames.at(static_cast<std::size_t>(frame.index - Settings().view_delay_frames));
+    EXPECT_EQ(found.state, TrackingState::lost) << found.index;
+    EXPECT_FALSE(found.has_live_pose);
+    EXPECT_TRUE(found.has_final_pose);
+    EXPECT_TRUE(std::any_of(result.events.begin(), result.events.end(), [&](const std::string& event) {
+      return event.rfind("frame " + std::to_string(found.index) + ": " + stateName(frame.state), 0) == 0;
+    })) << found.index;
+    EXPECT_EQ(result.frames.at(static_cast<std::size_t>(frame.index - 1)).state, TrackingState::lost);
+    EXPECT_EQ(result.frames.at(static_cast<std::size_t>(frame.index + 1)).state, TrackingState::tracking);
+  }
+  EXPECT_GE(told, 1);
+}
+
 TEST(FoundAgain, EveryPoseCalledGoodHasItsCovariance) {
-  const CoveredRun run = runWithCoveredLens();
+  const CoveredRun& run = runWithCoveredLens();
   int good = 0;
   for (const FrameRecord& frame : run.result.frames) {
     if (!isGoodPose(frame.state)) continue;

@@ -243,8 +243,12 @@ TEST(Tracker, AnotherPlaceIsLostAndGivesNoKeyframeOfIt) {
   EXPECT_GT(outcome.covariance(0, 0), run.outcome.covariance(0, 0));
   for (const TrackedFrame& frame : outcome.for_mapping) EXPECT_NE(frame.frame_index, 4);
   ASSERT_TRUE(run.tracker.hasLostFrame());
-  EXPECT_EQ(run.tracker.lostFrame(9).keyframe, 9);
-  EXPECT_EQ(run.tracker.lostFrame(9).frame_index, 4);
+  const TrackedFrame kept = run.tracker.keepLostFrame();
+  EXPECT_EQ(kept.frame_index, 4);
+  EXPECT_GT(kept.keyframe, run.tracker.view().keyframes.back().id);
+  EXPECT_EQ(run.tracker.keepLostFrame().keyframe, kept.keyframe + 1) << "no number twice";
+  ASSERT_TRUE(kept.images);
+  EXPECT_EQ(kept.images->frame_index, 4);
   const TrackingOutcome back = trackFrame(run.tracker, 5);
   EXPECT_EQ(back.state, FrameState::tracking) << back.reason;
   EXPECT_FALSE(run.tracker.hasLostFrame());
@@ -271,22 +275,30 @@ TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
   const TrackingOutcome lost = run.tracker.track(90, later_ns, imageAt(8));
   ASSERT_EQ(lost.state, FrameState::lost);
   ASSERT_TRUE(run.tracker.hasLostFrame());
-  EXPECT_EQ(run.tracker.lostImages().frame_index, 90);
+  const TrackedFrame kept = run.tracker.keepLostFrame();
+  EXPECT_EQ(kept.frame_index, 90);
+  ASSERT_TRUE(kept.images);
+  EXPECT_EQ(kept.images->frame_index, 90);
+  EXPECT_FALSE(run.tracker.keptEdges().points.empty());
+  // Others look for it for a while.
+  EXPECT_EQ(run.tracker.track(91, later_ns + interval_ns / 2, elsewhere()).state, FrameState::lost);
 
   const Pose new_T_old{rotationExp({0.1, 0.9, -0.2}), {-4, 2, 1}};
   const MapView view = moved(run.view, new_T_old);
   const std::vector<FoundAgain> found = foundIn(view, path(8), new_T_old);
   ASSERT_GT(found.size(), 50U);
   run.tracker.resume(view, new_T_old * path(8), 1e-6 * Matrix6d::Identity(), found);
-  EXPECT_FALSE(run.tracker.hasLostFrame());
   EXPECT_EQ(run.tracker.tracks().size(), found.size());
   EXPECT_EQ(run.tracker.view().version, view.version);
   for (int i = 9; i <= 11; ++i) {
-    const TrackingOutcome outcome = run.tracker.track(82 + i, later_ns + (i - 8) * interval_ns, imageAt(i));
+    const TrackingOutcome outcome = run.tracker.track(83 + i, later_ns + (i - 8) * interval_ns, imageAt(i));
     ASSERT_EQ(outcome.state, FrameState::tracking) << outcome.reason;
+    EXPECT_FALSE(run.tracker.hasLostFrame());
     EXPECT_LT(distance(outcome.world_T_camera, new_T_old * path(i)), 0.001) << i;
     EXPECT_LT(angle(outcome.world_T_camera, new_T_old * path(i)), 0.0005) << i;
-    for (const TrackedFrame& keyframe : outcome.for_mapping) EXPECT_EQ(keyframe.keyframe, 1) << "after the view's";
+    for (const TrackedFrame& keyframe : outcome.for_mapping) {
+      EXPECT_GT(keyframe.keyframe, kept.keyframe) << "after the view's and the kept frame's";
+    }
   }
 }
 

@@ -1,0 +1,116 @@
+#include "map/map_change.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace edgeslam {
+namespace {
+
+// How much longer lengths around the keyframe became: the median over the points that it sees; 1 where there are none.
+double scaleAround(const Map& before, const Map& after, KeyframeId keyframe) {
+  std::vector<double> ratios;
+  for (const PointObservation& observation : before.keyframes[keyframe].observations) {
+    const auto old_point = before.points.find(observation.point);
+    const auto new_point = after.points.find(observation.point);
+    if (old_point == before.points.end() || new_point == after.points.end()) continue;
+    const auto distance = [&](const Map& map, const MapPoint& point) {
+      return (worldPosition(map, point) - map.keyframes[keyframe].world_T_camera.translation).norm();
+    };
+    const double old_distance = distance(before, old_point->second);
+    if (old_distance > 0) ratios.push_back(distance(after, new_point->second) / old_distance);
+  }
+  if (ratios.empty()) return 1;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return *middle;
+}
+
+Similarity moveOfLatest(const Map& before, const Map& after) {
+  const Pose& old_pose = before.keyframes.back().world_T_camera;
+  const Pose& new_pose = after.keyframes.back().world_T_camera;
+  const double scale = scaleAround(before, after, before.keyframes.back().id);
+  const Eigen::Quaterniond rotation = (new_pose.rotation * old_pose.rotation.conjugate()).normalized();
+  return {scale, rotation, new_pose.translation - scale * (rotation * old_pose.translation)};
+}
+
+void compareViews(const Map& after, PointId id, const MapPoint& old_point, const MapPoint& new_point,
+                  MapChange& change) {
+  std::vector<KeyframeId> erased, added;
+  std::set_difference(old_point.seen_in.begin(), old_point.seen_in.end(), new_point.seen_in.begin(),
+                      new_point.seen_in.end(), std::back_inserter(erased));
+  std::set_difference(new_point.seen_in.begin(), new_point.seen_in.end(), old_point.seen_in.begin(),
+                      old_point.seen_in.end(), std::back_inserter(added));
+  for (const KeyframeId keyframe : erased) change.erased_views.emplace_back(id, keyframe);
+  for (const KeyframeId keyframe : added) {
+    change.added_views.push_back({keyframe, *findObservation(after.keyframes[keyframe], id)});
+  }
+}
+
+void addView(const MapChange::View& view, Map& map) {
+  Keyframe* keyframe = map.keyframes.find(view.keyframe);
+  const auto point = map.points.find(view.observation.point);
+  if (!keyframe || point == map.points.end() || point->second.host == view.keyframe) return;
+  std::vector<PointObservation>& observations = keyframe->observations;
+  const auto place = std::lower_bound(observations.begin(), observations.end(), view.observation.point,
+                                      [](const PointObservation& o, PointId wanted) { return o.point < wanted; });
+  if (place == observations.end() || place->point != view.observation.point) {
+    observations.insert(place, view.observation);
+  }
+  std::vector<KeyframeId>& seen_in = point->second.seen_in;
+  const auto among = std::lower_bound(seen_in.begin(), seen_in.end(), view.keyframe);
+  if (among == seen_in.end() || *among != view.keyframe) seen_in.insert(among, view.keyframe);
+}
+
+}  // namespace
+
+MapChange changeOf(const Map& before, const Map& after) {
+  MapChange change;
+  if (before.keyframes.empty()) return change;
+  for (const Keyframe& keyframe : after.keyframes) change.world_T_camera[keyframe.id] = keyframe.world_T_camera;
+  for (const auto& [id, point] : before.points) {
+    const auto found = after.points.find(id);
+    if (found == after.points.end()) {
+      change.erased_points.push_back(id);
+      continue;
+    }
+    const MapPoint& now = found->second;
+    change.depths[id] = {now.host, now.inverse_depth, now.inverse_depth_sigma, point.inverse_depth / now.inverse_depth};
+    compareViews(after, id, point, now, change);
+  }
+  change.newer_S_world = moveOfLatest(before, after);
+  return change;
+}
+
+void applyChange(const MapChange& change, Map& map) {
+  if (change.empty()) return;
+  const Similarity& move = change.newer_S_world;
+  for (Keyframe& keyframe : map.keyframes) {
+    const auto moved = change.world_T_camera.find(keyframe.id);
+    keyframe.world_T_camera = moved != change.world_T_camera.end()
+                                  ? moved->second
+                                  : Pose{(move.rotation * keyframe.world_T_camera.rotation).normalized(),
+                                         move * keyframe.world_T_camera.translation};
+  }
+  for (auto& [id, point] : map.points) {
+    const auto depth = change.depths.find(id);
+    if (depth != change.depths.end() && depth->second.host == point.host) {
+      point.inverse_depth = depth->second.inverse_depth;
+      point.inverse_depth_sigma = depth->second.inverse_depth_sigma;
+    } else {
+      const double scale = depth != change.depths.end() ? depth->second.scale : move.scale;
+      point.inverse_depth /= scale;
+      point.inverse_depth_sigma /= scale;
+    }
+  }
+  for (const PointId id : change.erased_points) map.points.erase(id);
+  for (const auto& [id, keyframe] : change.erased_views) {
+    const auto point = map.points.find(id);
+    if (point == map.points.end()) continue;
+    std::vector<KeyframeId>& seen_in = point->second.seen_in;
+    seen_in.erase(std::remove(seen_in.begin(), seen_in.end(), keyframe), seen_in.end());
+    if (seen_in.empty()) map.points.erase(point);
+  }
+  for (const MapChange::View& view : change.added_views) addView(view, map);
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,27 @@
+// What a frame came to, as it is given out at the time.
+#pragma once
+
+#include <string>
+
+#include "map/keyframe.h"
+#include "pipeline/run_result.h"
+#include "tracking/stage_times.h"
+
+namespace edgeslam {
+
+struct FrameResult {
+  std::int64_t index = 0;  // in the source
+  std::int64_t time_ns = 0;
+  TrackingState state = TrackingState::initialising;
+  std::string reason;  // why it is not `tracking`, or empty
+  bool has_pose = false;
+  Pose world_T_camera;
+  Matrix6d covariance = Matrix6d::Zero();  // right-hand update [translation; rotation]
+  KeyframeId reference = -1;               // the keyframe that carries this frame's final pose, or -1
+  Pose reference_T_camera;
+  int tracked_points = 0;
+  int mapped_points = 0;
+  StageTimes times;
+};
+
+}  // namespace edgeslam

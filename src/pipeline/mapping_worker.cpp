@@ -1,0 +1,113 @@
+#include "pipeline/mapping_worker.h"
+
+namespace edgeslam {
+
+void MappingWorker::goOnWith(Map map) {
+  mapper_.goOnWith(std::move(map));
+  relocalisation_.update(mapper_.map());
+}
+
+std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
+  last_message_ = message.number;
+  last_frame_ = message.frame.frame_index;
+  new_keyframe_ = false;
+  found_.reset();
+  not_found_.clear();
+  if (message.lost) {
+    find(message);
+    return nextUpdate();
+  }
+  if (message.frame.keyframe == 0) map_since_message_ = message.number;
+  if (!mapper_.add(message.frame)) return std::nullopt;
+  if (mapper_.initialised()) {
+    new_keyframe_ = true;
+    relocalisation_.update(mapper_.map());
+    std::vector<CulledKeyframe> culled = mapper_.takeCulled();
+    if (!culled.empty()) report(last_frame_).culled = std::move(culled);
+  }
+  return nextUpdate();
+}
+
+// The frame's pose is lost: recovery by its tracks (P21), then the map as a whole (P22).
+void MappingWorker::find(const MappingMessage& message) {
+  if (!mapper_.initialised()) return;
+  if (message.recover && recover(message)) return;
+  if (settings_.relocalisation_enabled) relocalise(message);
+}
+
+bool MappingWorker::recover(const MappingMessage& message) {
+  const RecoveryResult recovery = mapper_.recover(message.frame);
+  not_found_ = recovery.reason;
+  if (!recovery.found) return false;
+  new_keyframe_ = true;
+  relocalisation_.update(mapper_.map());
+  const Keyframe& keyframe = mapper_.map().keyframes.back();
+  goOnFrom(TrackingState::recovered, keyframe.id, keyframe.world_T_camera, recovery.covariance, {},
+           "recovered from three keyframes, " + std::to_string(recovery.inliers) + " points");
+  reports_.back().culled = mapper_.takeCulled();
+  return true;
+}
+
+void MappingWorker::relocalise(const MappingMessage& message) {
+  const Map& map = mapper_.map();
+  // What looks like a place out of reach is another place that looks the same.
+  std::optional<Reachable> reachable;
+  if (message.last_good_pose) reachable = reachableFrom(map, *message.last_good_pose, message.seconds_since);
+  const RelocalisationResult result = relocalisation_.relocalise(map, *message.frame.images, message.edges, reachable);
+  not_found_ = result.reason;
+  if (!result.found) return;
+  std::vector<FoundAgain> points;
+  for (const MatchedPoint& match : result.matches) points.push_back({match.point, match.measurement, match.corner});
+  goOnFrom(TrackingState::relocalised, result.keyframe, result.world_T_camera, result.pose.covariance,
+           std::move(points),
+           "relocalised at keyframe " + std::to_string(result.keyframe) + ", " +
+               std::to_string(result.evidence.inliers) + " of " + std::to_string(result.evidence.visible) + " points");
+}
+
+void MappingWorker::goOnFrom(TrackingState how, KeyframeId reference, const Pose& world_T_camera,
+                             const Matrix6d& covariance, std::vector<FoundAgain> points, const std::string& event) {
+  found_ = {last_frame_, how, world_T_camera, covariance, std::move(points)};
+  found_reference_ = reference;
+  found_reference_T_camera_ = mapper_.map().keyframes[reference].world_T_camera.inverse() * world_T_camera;
+  MappingReport& done = report(last_frame_);
+  done.events.push_back(event);
+  done.found = {how, found_reference_, found_reference_T_camera_};
+}
+
+std::optional<MapUpdate> MappingWorker::apply(const Correction& correction) {
+  if (correction.number < map_since_message_) return std::nullopt;  // of a map that was given up
+  if (!correction.events.empty() || correction.loop) {
+    MappingReport& done = report(last_frame_);
+    done.events = correction.events;
+    done.loop = correction.loop;
+  }
+  if (correction.change.empty()) return std::nullopt;
+  mapper_.apply(correction.change);
+  if (found_) {
+    found_->world_T_camera = mapper_.map().keyframes[found_reference_].world_T_camera * found_reference_T_camera_;
+  }
+  return nextUpdate();
+}
+
+std::optional<Snapshot> MappingWorker::snapshot() const {
+  if (!new_keyframe_) return std::nullopt;
+  return Snapshot{last_message_, last_frame_, std::make_shared<const Map>(mapper_.map())};
+}
+
+MapUpdate MappingWorker::nextUpdate() {
+  MapUpdate update;
+  update.number = next_update_++;
+  update.answers = last_message_;
+  update.view = mapper_.view(found_ ? found_reference_ : -1);
+  update.found = found_;
+  update.not_found = not_found_;
+  return update;
+}
+
+MappingReport& MappingWorker::report(std::int64_t frame_index) {
+  MappingReport& added = reports_.emplace_back();
+  added.frame_index = frame_index;
+  return added;
+}
+
+}  // namespace edgeslam

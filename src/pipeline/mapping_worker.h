@@ -1,0 +1,61 @@
+// Mapping at work: owns the map; takes tracking's messages and places' corrections, gives updates. What it is handed,
+// in that order, decides all that it gives.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "mapping/mapper.h"
+#include "pipeline/messages.h"
+#include "pipeline/settings.h"
+#include "places/relocalisation.h"
+
+namespace edgeslam {
+
+class MappingWorker {
+ public:
+  MappingWorker(const Camera& camera, const Settings& settings)
+      : settings_(settings), mapper_(camera, settings.mapping), relocalisation_(camera, settings.relocalisation) {}
+
+  // Before the first message: goes on with a map made earlier, of the same camera.
+  void goOnWith(Map map);
+
+  // The next message of tracking. No update: nothing changed that tracking is to know.
+  std::optional<MapUpdate> handle(const MappingMessage& message);
+  // What places made of a snapshot of the map, in the order of the snapshots.
+  std::optional<MapUpdate> apply(const Correction& correction);
+
+  // The map for places, after a message that brought a keyframe.
+  std::optional<Snapshot> snapshot() const;
+  // What was done since this was last asked.
+  std::vector<MappingReport> takeReports() { return std::exchange(reports_, {}); }
+
+  const Mapper& mapper() const { return mapper_; }
+
+ private:
+  void find(const MappingMessage& message);
+  bool recover(const MappingMessage& message);
+  void relocalise(const MappingMessage& message);
+  void goOnFrom(TrackingState how, KeyframeId reference, const Pose& world_T_camera, const Matrix6d& covariance,
+                std::vector<FoundAgain> points, const std::string& event);
+  MapUpdate nextUpdate();
+  MappingReport& report(std::int64_t frame_index);
+
+  Settings settings_;
+  Mapper mapper_;
+  Relocalisation relocalisation_;
+  std::int64_t last_message_ = -1;
+  std::int64_t last_frame_ = -1;        // of the last message
+  std::int64_t map_since_message_ = 0;  // that began this map
+  bool new_keyframe_ = false;           // by the last message
+  // Of the last lost frame, until tracking sends another one or goes on: updates can be passed over.
+  std::optional<FoundFrame> found_;
+  KeyframeId found_reference_ = -1;
+  Pose found_reference_T_camera_;
+  std::string not_found_;
+  std::int64_t next_update_ = 0;
+  std::vector<MappingReport> reports_;
+};
+
+}  // namespace edgeslam

@@ -1,0 +1,77 @@
+// What tracking, mapping and places hand to each other (design, section 4): values, numbered in the order in which they
+// are made. Each of the three is a pure function of what it was handed, in that order.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "map/map_change.h"
+#include "map/map_view.h"
+#include "mapping/culling.h"
+#include "pipeline/run_result.h"
+#include "tracking/tracker.h"
+
+namespace edgeslam {
+
+// Tracking to mapping: a frame, or a frame whose pose was lost.
+struct MappingMessage {
+  std::int64_t number = 0;  // counted from 0
+  TrackedFrame frame;       // of a lost frame: its tracks, without a pose, and the number it gets if it is recovered
+  bool lost = false;
+  // Of a lost frame:
+  EdgeMap edges;
+  std::optional<Pose> last_good_pose;  // none before the first
+  double seconds_since = 0;            // the last good pose
+  bool recover = false;                // its tracks run through the last keyframes: P21 before P22
+};
+
+// A lost frame was found again.
+struct FoundFrame {
+  std::int64_t frame_index = -1;
+  TrackingState how = TrackingState::relocalised;  // or recovered
+  Pose world_T_camera;
+  Matrix6d covariance = Matrix6d::Zero();
+  std::vector<FoundAgain> points;  // empty: the tracks that it had go on
+};
+
+// Mapping to tracking. A newer update takes the place of those before.
+struct MapUpdate {
+  std::int64_t number = -1;   // counted from 0
+  std::int64_t answers = -1;  // the latest message that it knows of
+  MapView view;
+  std::optional<FoundFrame> found;
+  std::string not_found;  // why a lost frame was not found; empty where none was looked for
+};
+
+// Mapping to places: the map as it was after a keyframe.
+struct Snapshot {
+  std::int64_t number = 0;  // of the keyframe's message
+  std::int64_t frame_index = 0;
+  std::shared_ptr<const Map> map;
+};
+
+// Places to mapping: what became of a snapshot.
+struct Correction {
+  std::int64_t number = 0;          // of the snapshot
+  MapChange change;                 // empty: nothing is to be done
+  std::vector<std::string> events;  // loops closed and refused, with their reasons
+  std::optional<ClosedLoop> loop;
+};
+
+// What mapping and places did, for those who look at the run.
+struct MappingReport {
+  struct Found {
+    TrackingState how = TrackingState::relocalised;
+    KeyframeId reference = -1;  // the keyframe that carries the frame's final pose
+    Pose reference_T_camera;
+  };
+  std::int64_t frame_index = 0;
+  std::optional<Found> found;  // the frame was lost, and then it was not
+  std::vector<std::string> events;
+  std::vector<CulledKeyframe> culled;
+  std::optional<ClosedLoop> loop;
+};
+
+}  // namespace edgeslam

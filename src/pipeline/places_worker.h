@@ -1,0 +1,37 @@
+// Places at work: each snapshot of the map is looked at for loops (P23 to P27) and adjusted as a whole where that is
+// due (P20). Gives corrections; the map itself is mapping's.
+#pragma once
+
+#include "mapping/global_adjustment.h"
+#include "pipeline/messages.h"
+#include "pipeline/settings.h"
+#include "places/loop_closing.h"
+
+namespace edgeslam {
+
+class PlacesWorker {
+ public:
+  PlacesWorker(const Camera& camera, const Settings& settings)
+      : camera_(camera), settings_(settings), loop_closing_(camera, settings.loops) {}
+
+  // Snapshots in the order of their numbers, not necessarily all.
+  Correction work(const Snapshot& snapshot);
+
+ private:
+  enum class Meeting { none, first, longer };
+
+  bool closeLoop(Map& map, Correction& correction);
+  Meeting meetOldPart(const Map& map);
+  bool globalAdjustmentDue(const Map& map) const;
+
+  Camera camera_;
+  Settings settings_;
+  LoopClosing loop_closing_;
+  std::int64_t origin_frame_ = -1;   // of the map's first keyframe
+  KeyframeId last_met_ = -1;         // latest keyframe that met an old part of the map ...
+  KeyframeId last_shared_out_ = -1;  // ... and the latest at which the drift was shared out for it
+  KeyframeId last_global_ = 0;       // latest keyframe at the last global adjustment ...
+  std::int64_t last_global_ns_ = 0;  // ... and its time
+};
+
+}  // namespace edgeslam

@@ -1,0 +1,45 @@
+// The record of a run, put together from what its frames came to and what mapping and places report.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "mapping/mapper.h"
+#include "pipeline/frame_result.h"
+#include "pipeline/messages.h"
+#include "pipeline/run_result.h"
+
+namespace edgeslam {
+
+class RunRecord {
+ public:
+  explicit RunRecord(const Camera& camera) { result_.camera = camera; }
+
+  // Before the first frame: keyframes before `first` are of the run that made a saved map.
+  void goOnFrom(KeyframeId first) { first_keyframe_ = first; }
+  // In the order of their indices.
+  FrameRecord& add(const FrameResult& frame, bool unreadable);
+  void add(MappingReport report);
+  void add(DrawnFrame drawing) { result_.drawings.push_back(std::move(drawing)); }
+
+  // Final poses, carried by their keyframes, and the map. Call once, at the end.
+  RunResult finish(const Mapper& mapper);
+
+ private:
+  struct CarriedPose {
+    KeyframeId reference = -1;  // the keyframe that carries the frame's pose, or -1
+    Pose reference_T_camera;
+  };
+
+  std::size_t placeOf(std::int64_t frame_index) const;
+  std::optional<Pose> finalPose(const Map& map, const CarriedPose& carried) const;
+
+  RunResult result_;
+  KeyframeId first_keyframe_ = 0;    // of this run
+  std::deque<CarriedPose> carried_;  // by frame record
+  std::map<KeyframeId, CulledKeyframe> culled_;
+};
+
+}  // namespace edgeslam

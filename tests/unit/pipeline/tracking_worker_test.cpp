@@ -1,0 +1,345 @@
+// Tracking at work before a textured plane, with mapping's answers made by hand.
+#include "pipeline/tracking_worker.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "unit/tracking/textured_plane.h"
+
+namespace edgeslam {
+namespace {
+
+const Camera camera = smallCamera();
+constexpr std::int64_t interval_ns = 33'333'333;
+constexpr std::int64_t long_after_ns = 3'000'000'000;  // the last frame's points are not looked for any more
+
+const TexturedPlane& wall() {
+  static const TexturedPlane plane{SmoothTexture(51, 10, 60)};
+  return plane;
+}
+
+Pose path(int i) { return {rotationExp({0.002 * i, -0.003 * i, 0.001 * i}), {0.012 * i, 0.005 * i, 0.004 * i}}; }
+
+// Rendered once, as that takes longer than tracking.
+const cv::Mat& imageAt(int i) {
+  static std::map<int, cv::Mat> rendered;
+  cv::Mat& image = rendered[i];
+  if (image.empty()) image = wall().render(camera, path(i));
+  return image;
+}
+
+const cv::Mat& elsewhere() {
+  static const cv::Mat image = TexturedPlane{SmoothTexture(77, 10, 60)}.render(camera, Pose());
+  return image;
+}
+
+// What mapping would answer to the first frame, if it knew the plane.
+MapView knownMap(const TrackedFrame& first) {
+  MapView view = flatView(first);
+  view.version = 1;
+  view.initialised = true;
+  view.waiting_for.clear();
+  view.keyframes[0].images = first.images;
+  for (std::size_t i = 0; i < view.points.size(); ++i) {
+    const PointObservation& seen = first.observations[i];
+    ViewPoint& point = view.points[i];
+    point = viewPoint(view, point.id, 0, wall().seenAt(camera, Pose(), seen.measurement.pixel));
+    point.source = 0;
+    point.source_measurement = seen.measurement;
+    point.corner = seen.corner;
+  }
+  return view;
+}
+
+double distance(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }
+
+// A worker that knows the plane, and all messages that it gave.
+struct Followed {
+  TrackingWorker worker;
+  std::vector<MappingMessage> messages;
+  MapUpdate update;  // the last one that it took
+
+  // Follows the plane up to frame `last`.
+  explicit Followed(int last, const Settings& settings = Settings()) : worker(camera, settings) {
+    process(0, 0, imageAt(0));
+    update.number = update.answers = 0;
+    update.view = knownMap(messages.at(0).frame);
+    worker.take(update);
+    for (int i = 1; i <= last; ++i) process(i, i * interval_ns, imageAt(i));
+  }
+
+  FrameResult process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
+    return worker.process(index, time_ns, grey, messages);
+  }
+
+  // Mapping knows of the messages up to `answers`; the map is as it was.
+  MapUpdate& nextUpdate(std::int64_t answers) {
+    ++update.number;
+    update.answers = answers;
+    ++update.view.version;
+    update.found.reset();
+    update.not_found.clear();
+    return update;
+  }
+
+  std::vector<MappingMessage> questions() const {
+    std::vector<MappingMessage> asked;
+    for (const MappingMessage& message : messages) {
+      if (message.lost) asked.push_back(message);
+    }
+    return asked;
+  }
+
+  // Found where frame `i` of the path is: its pose and the map points there.
+  FoundFrame foundAt(std::int64_t frame_index, int i) const {
+    FoundFrame found;
+    found.frame_index = frame_index;
+    found.world_T_camera = path(i);
+    found.covariance = 1e-6 * Matrix6d::Identity();
+    for (const ViewPoint& point : update.view.points) {
+      const Eigen::Vector2d pixel = project(camera, path(i).inverse() * worldPosition(update.view, point));
+      if (!insideImage(camera, pixel, 20)) continue;
+      found.points.push_back({point.id, point.source_measurement, point.corner});
+      found.points.back().measurement.pixel = pixel;
+    }
+    return found;
+  }
+};
+
+TEST(TrackingWorker, BeforeTheMapEveryFrameIsAMessageAndNoneHasAPose) {
+  TrackingWorker worker(camera, Settings());
+  std::vector<MappingMessage> messages;
+  for (int i = 0; i < 4; ++i) {
+    const FrameResult result = worker.process(i, i * interval_ns, imageAt(i), messages);
+    EXPECT_EQ(result.index, i);
+    EXPECT_EQ(result.time_ns, i * interval_ns);
+    EXPECT_EQ(result.state, TrackingState::initialising);
+    EXPECT_FALSE(result.has_pose);
+    EXPECT_NE(result.reason, "");
+  }
+  ASSERT_EQ(messages.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(messages[i].number, static_cast<std::int64_t>(i));
+    EXPECT_EQ(messages[i].frame.frame_index, static_cast<std::int64_t>(i));
+    EXPECT_EQ(messages[i].frame.keyframe, i == 0 ? 0 : -1);
+    EXPECT_FALSE(messages[i].lost);
+  }
+}
+
+TEST(TrackingWorker, MessagesAreNumberedOneByOneAndKeyframesNeverGoBack) {
+  Settings settings;
+  settings.tracking.keyframes.interval_s = 0.12;
+  Followed run(3, settings);
+  for (int i = 4; i < 30; ++i) {
+    // Lost now and then, for frames in a row; questions are answered: not found.
+    const bool lost = i % 9 == 4 || i % 9 == 5;
+    run.process(i, i * interval_ns, lost ? elsewhere() : imageAt(i));
+    run.nextUpdate(run.messages.back().number).not_found = "it looks like nothing";
+    run.worker.take(run.update);
+  }
+  ASSERT_GE(run.questions().size(), 3U);
+  KeyframeId keyframe = -1;
+  int keyframes = 0;
+  for (std::size_t i = 0; i < run.messages.size(); ++i) {
+    EXPECT_EQ(run.messages[i].number, static_cast<std::int64_t>(i));
+    if (run.messages[i].frame.keyframe < 0) continue;
+    EXPECT_GT(run.messages[i].frame.keyframe, keyframe) << i;
+    keyframe = run.messages[i].frame.keyframe;
+    keyframes += run.messages[i].lost ? 0 : 1;
+  }
+  EXPECT_GE(keyframes, 3);
+  // The numbers of lost frames that were not found are nobody's.
+  EXPECT_EQ(keyframe + 1, keyframes + static_cast<int>(run.questions().size()));
+}
+
+TEST(TrackingWorker, ALostFrameIsAskedForWithAllThatIsKnownOfIt) {
+  Followed run(3);
+  const FrameResult lost = run.process(4, 4 * interval_ns, elsewhere());
+  EXPECT_EQ(lost.state, TrackingState::lost);
+  EXPECT_FALSE(lost.has_pose);
+  EXPECT_EQ(lost.reference, -1);
+  ASSERT_EQ(run.questions().size(), 1U);
+  const MappingMessage& question = run.messages.back();
+  EXPECT_TRUE(question.lost);
+  EXPECT_EQ(question.frame.frame_index, 4);
+  EXPECT_GE(question.frame.keyframe, 1);
+  ASSERT_TRUE(question.frame.images);
+  EXPECT_EQ(question.frame.images->frame_index, 4);
+  EXPECT_FALSE(question.edges.points.empty());
+  ASSERT_TRUE(question.last_good_pose);
+  EXPECT_LT(distance(*question.last_good_pose, path(3)), 0.001);
+  EXPECT_NEAR(question.seconds_since, 1.0 / 30, 1e-6);
+  EXPECT_TRUE(question.recover);
+}
+
+TEST(TrackingWorker, OnlyOneQuestionAtATime) {
+  Followed run(3);
+  for (int i = 4; i < 8; ++i) {
+    run.process(i, i * interval_ns, elsewhere());
+    // What mapping made of the messages before the question answers nothing.
+    run.nextUpdate(run.questions().at(0).number - 1);
+    run.worker.take(run.update);
+  }
+  ASSERT_EQ(run.questions().size(), 1U);
+  run.nextUpdate(run.questions().at(0).number).not_found = "too few points agree";
+  run.worker.take(run.update);
+  const FrameResult next = run.process(8, 8 * interval_ns, elsewhere());
+  EXPECT_EQ(next.state, TrackingState::lost);
+  EXPECT_NE(next.reason.find("too few points agree"), std::string::npos) << next.reason;
+  ASSERT_EQ(run.questions().size(), 2U);
+  EXPECT_EQ(run.questions().at(1).frame.frame_index, 8);
+  EXPECT_NEAR(run.questions().at(1).seconds_since, 5.0 / 30, 1e-6);
+}
+
+TEST(TrackingWorker, LongAfterTheLossTheTracksAreNoHelpAnyMore) {
+  Followed run(3);
+  for (int i = 0; i < 15; ++i) {
+    run.process(4 + i, (4 + i) * interval_ns, elsewhere());
+    run.nextUpdate(run.messages.back().number);
+    run.worker.take(run.update);
+  }
+  const std::vector<MappingMessage> questions = run.questions();
+  ASSERT_EQ(questions.size(), 15U);
+  EXPECT_TRUE(questions.front().recover);
+  EXPECT_FALSE(questions.back().recover);
+}
+
+TEST(TrackingWorker, WhereNothingIsLookedForNothingIsAsked) {
+  Settings settings;
+  settings.relocalisation_enabled = settings.mapping.recovery_enabled = false;
+  Followed run(3, settings);
+  EXPECT_EQ(run.process(4, 4 * interval_ns, elsewhere()).state, TrackingState::lost);
+  EXPECT_TRUE(run.questions().empty());
+}
+
+class TrackingWorkerFound : public testing::TestWithParam<TrackingState> {};
+INSTANTIATE_TEST_SUITE_P(How, TrackingWorkerFound,
+                         testing::Values(TrackingState::recovered, TrackingState::relocalised),
+                         [](const auto& how) { return std::string(stateName(how.param)); });
+
+TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
+  Followed run(3);
+  run.process(4, 4 * interval_ns, elsewhere());
+  run.nextUpdate(run.messages.back().number);
+  run.worker.take(run.update);
+  // Long after the loss the camera is back, but no point is followed there.
+  ASSERT_EQ(run.process(90, long_after_ns, imageAt(8)).state, TrackingState::lost);
+  const MappingMessage question = run.messages.back();
+  ASSERT_TRUE(question.lost);
+  ASSERT_EQ(question.frame.frame_index, 90);
+  ASSERT_EQ(run.process(91, long_after_ns + interval_ns / 2, elsewhere()).state, TrackingState::lost);
+  EXPECT_EQ(run.messages.back().number, question.number);
+
+  MapUpdate& answer = run.nextUpdate(question.number);
+  answer.found = run.foundAt(90, 8);
+  answer.found->how = GetParam();
+  ASSERT_GT(answer.found->points.size(), 50U);
+  run.worker.take(answer);
+  for (int i = 9; i <= 12; ++i) {
+    const FrameResult result = run.process(83 + i, long_after_ns + (i - 8) * interval_ns, imageAt(i));
+    ASSERT_TRUE(result.has_pose) << result.reason;
+    EXPECT_EQ(result.state, i == 9 ? GetParam() : TrackingState::tracking) << i;
+    EXPECT_EQ(result.reason, "");
+    EXPECT_LT(distance(result.world_T_camera, path(i)), 0.001) << i;
+    EXPECT_GE(result.reference, 0);
+    // Updates after the answer still tell of it, and are no answer any more.
+    run.update.number++;
+    run.update.view.version++;
+    run.worker.take(run.update);
+  }
+  for (const MappingMessage& message : run.messages) {
+    if (message.number <= question.number) continue;
+    EXPECT_FALSE(message.lost);
+    EXPECT_GT(message.frame.keyframe, question.frame.keyframe);
+  }
+}
+
+// An answer that would lead tracking astray if it were taken.
+FoundFrame astray(std::int64_t frame_index, const Followed& run) {
+  FoundFrame found = run.foundAt(frame_index, 8);
+  found.world_T_camera = Pose{rotationExp({0, 1, 0}), {5, 5, 5}};
+  return found;
+}
+
+TEST(TrackingWorker, AnAnswerAfterTrackingWasRegainedIsNotUsed) {
+  Followed run(3);
+  ASSERT_EQ(run.process(4, 4 * interval_ns, elsewhere()).state, TrackingState::lost);
+  const std::int64_t question = run.messages.back().number;
+  ASSERT_EQ(run.process(5, 5 * interval_ns, imageAt(5)).state, TrackingState::tracking);
+  MapUpdate& answer = run.nextUpdate(question);
+  answer.found = astray(4, run);
+  run.worker.take(answer);
+  EXPECT_EQ(run.worker.tracker().view().version, answer.view.version) << "the view is taken";
+  for (int i = 6; i < 9; ++i) {
+    const FrameResult result = run.process(i, i * interval_ns, imageAt(i));
+    EXPECT_EQ(result.state, TrackingState::tracking) << result.reason;
+    EXPECT_LT(distance(result.world_T_camera, path(i)), 0.001) << i;
+  }
+}
+
+TEST(TrackingWorker, NorIsItWhenTrackingWasLostOnceMore) {
+  Followed run(3);
+  ASSERT_EQ(run.process(4, 4 * interval_ns, elsewhere()).state, TrackingState::lost);
+  const std::int64_t question = run.messages.back().number;
+  for (int i = 5; i < 8; ++i) run.process(i, i * interval_ns, imageAt(i));
+  ASSERT_EQ(run.process(8, 8 * interval_ns, elsewhere()).state, TrackingState::lost);
+  MapUpdate& answer = run.nextUpdate(question);
+  answer.found = astray(4, run);
+  run.worker.take(answer);
+  // Frame 4 is history: tracking goes on from frame 7.
+  const FrameResult result = run.process(9, 9 * interval_ns, imageAt(9));
+  EXPECT_EQ(result.state, TrackingState::tracking) << result.reason;
+  EXPECT_LT(distance(result.world_T_camera, path(9)), 0.001);
+}
+
+TEST(TrackingWorker, NorDoesItsReasonTellOfTheNextLoss) {
+  Followed run(3);
+  ASSERT_EQ(run.process(4, 4 * interval_ns, elsewhere()).state, TrackingState::lost);
+  const std::int64_t question = run.messages.back().number;
+  ASSERT_EQ(run.process(5, 5 * interval_ns, imageAt(5)).state, TrackingState::tracking);
+  run.nextUpdate(question).not_found = "too few points agree";
+  run.worker.take(run.update);
+  const FrameResult lost = run.process(6, 6 * interval_ns, elsewhere());
+  EXPECT_EQ(lost.state, TrackingState::lost);
+  EXPECT_EQ(lost.reason.find("too few points agree"), std::string::npos) << lost.reason;
+}
+
+TEST(TrackingWorker, AFrameThatCouldNotBeReadIsPredictedAndAsksNothing) {
+  Followed run(4);
+  const std::size_t messages = run.messages.size();
+  const FrameResult result = run.worker.skip(5, 5 * interval_ns, "frame 5 is cut off");
+  EXPECT_EQ(result.index, 5);
+  EXPECT_EQ(result.state, TrackingState::predicted);
+  EXPECT_EQ(result.reason, "frame 5 is cut off");
+  EXPECT_TRUE(result.has_pose);
+  EXPECT_EQ(result.reference, -1) << "a guess is carried by no keyframe";
+  EXPECT_EQ(run.messages.size(), messages);
+}
+
+TEST(TrackingWorker, InAMapMadeEarlierFramesAreLostUntilOneIsFound) {
+  const Followed earlier(0);
+  TrackingWorker worker(camera, Settings());
+  worker.goOnWith(earlier.update.view, 10'000);
+  std::vector<MappingMessage> messages;
+  EXPECT_EQ(worker.process(0, long_after_ns, imageAt(4), messages).state, TrackingState::lost);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_TRUE(messages[0].lost);
+  EXPECT_FALSE(messages[0].last_good_pose);
+  EXPECT_FALSE(messages[0].recover) << "no track runs through the map's keyframes";
+  MapUpdate answer = earlier.update;
+  answer.answers = 0;
+  answer.found = earlier.foundAt(0, 4);
+  worker.take(answer);
+  const FrameResult result = worker.process(1, long_after_ns + interval_ns, imageAt(5), messages);
+  EXPECT_EQ(result.state, TrackingState::relocalised) << result.reason;
+  EXPECT_LT(distance(result.world_T_camera, path(5)), 0.001);
+  for (const MappingMessage& message : messages) {
+    if (message.lost) continue;
+    EXPECT_GE(message.frame.observations.back().point, 10'000);
+    EXPECT_GT(message.frame.keyframe, messages[0].frame.keyframe);
+  }
+}
+
+}  // namespace
+}  // namespace edgeslam
