@@ -282,6 +282,17 @@ std::unique_ptr<CeresProblem> buildCeresProblem(const Camera& camera, const Bund
   return built;
 }
 
+class GiveUp : public ceres::IterationCallback {
+ public:
+  explicit GiveUp(const std::atomic<bool>* interrupted) : interrupted_(interrupted) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return interrupted_->load(std::memory_order_relaxed) ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::atomic<bool>* interrupted_;
+};
+
 // Points are eliminated first; what is left is a dense system in a local map and a sparse one in a large one.
 ceres::Solver::Options solverOptions(CeresProblem& built, const BundleOptions& options) {
   constexpr int kDenseCameras = 30;
@@ -368,7 +379,10 @@ BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const Bu
   const std::unique_ptr<CeresProblem> built = buildCeresProblem(camera, problem, options.huber);
   if (built->ceres->NumResidualBlocks() > 0) {
     ceres::Solver::Summary summary;
-    ceres::Solve(solverOptions(*built, options), built->ceres.get(), &summary);
+    ceres::Solver::Options solver = solverOptions(*built, options);
+    GiveUp give_up(options.interrupted);
+    if (options.interrupted) solver.callbacks.push_back(&give_up);
+    ceres::Solve(solver, built->ceres.get(), &summary);
     BundleProblem adjusted = problem;
     bool usable = summary.IsSolutionUsable() && readBack(*built, adjusted);
     if (usable && scaleIsFree(problem)) {

@@ -3,6 +3,7 @@
 // edge, with analytic Jacobians; Ceres minimises them with the points eliminated first (1x1 blocks).
 #pragma once
 
+#include <atomic>
 #include <vector>
 
 #include "geometry/camera.h"
@@ -43,7 +44,8 @@ struct BundleProblem {
 
 struct BundleOptions {
   int iterations = 8;
-  double huber = 2.0;  // whitened, of the norm of an observation's two residuals
+  double huber = 2.0;                              // whitened, of the norm of an observation's two residuals
+  const std::atomic<bool>* interrupted = nullptr;  // where it becomes true, the adjustment is given up: not usable
 };
 
 struct BundleResult {

@@ -14,8 +14,11 @@
 
 #include "app/command_line.h"
 #include "app/configuration.h"
+#include "app/frame_problem.h"
+#include "app/live_replay.h"
 #include "dataset/evaluation.h"
 #include "dataset/frame_source.h"
+#include "dataset/recording_source.h"
 #include "dataset/run_files.h"
 #include "dataset/saved_map.h"
 #include "pipeline/lockstep_run.h"
@@ -28,6 +31,8 @@ struct ReplayArguments {
   std::string configuration;
   std::string output = "result";
   std::string map_in, map_out;
+  bool realtime = false;
+  std::string record;
   int drawings = 12;
 };
 
@@ -37,7 +42,8 @@ class Progress {
   explicit Progress(std::int64_t total)
       : total_(total), terminal_(isatty(STDERR_FILENO) == 1), start_(now()), last_(start_) {}
 
-  void show(const FrameRecord& frame, std::int64_t count, double sequence_s) {
+  template <typename Frame>
+  void show(const Frame& frame, std::int64_t count, double sequence_s) {
     const double elapsed = now() - last_;
     if (elapsed < (terminal_ ? 0.1 : 10.0)) return;
     last_ = now();
@@ -89,12 +95,18 @@ RunDescription describe(const ReplayArguments& arguments, const Configuration& c
                                           std::to_string(EIGEN_MAJOR_VERSION) + "." +
                                           std::to_string(EIGEN_MINOR_VERSION);
   description.configuration = formatConfiguration(configuration);
-  description.command_line = "edgeslam replay " + arguments.input +
-                             (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
-                             (arguments.map_in.empty() ? "" : " --map-in " + arguments.map_in) +
-                             (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) + " --output " +
-                             arguments.output;
+  description.command_line =
+      "edgeslam replay " + arguments.input +
+      (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
+      (arguments.map_in.empty() ? "" : " --map-in " + arguments.map_in) +
+      (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) + (arguments.realtime ? " --realtime" : "") +
+      (arguments.record.empty() ? "" : " --record " + arguments.record) + " --output " + arguments.output;
   return description;
+}
+
+void tellSkipped(std::int64_t index, const std::string& problem, const Progress& progress) {
+  progress.end();
+  std::cerr << "edgeslam: frame " << index << " skipped: " << problem << "\n";
 }
 
 void processAll(FrameSource& source, const Camera& camera, LockstepRun& run) {
@@ -102,16 +114,8 @@ void processAll(FrameSource& source, const Camera& camera, LockstepRun& run) {
   std::int64_t count = 0, first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
     if (count++ == 0) first_ns = frame->time_ns;
-    std::string problem = frame->problem;
-    if (problem.empty() && (frame->grey.cols != camera.width || frame->grey.rows != camera.height)) {
-      problem = "image of " + std::to_string(frame->grey.cols) + " x " + std::to_string(frame->grey.rows) +
-                " pixels, the calibration is for " + std::to_string(camera.width) + " x " +
-                std::to_string(camera.height);
-    }
-    if (!problem.empty()) {
-      progress.end();
-      std::cerr << "edgeslam: frame " << frame->index << " skipped: " << problem << "\n";
-    }
+    const std::string problem = frameProblem(*frame, camera);
+    if (!problem.empty()) tellSkipped(frame->index, problem, progress);
     const FrameRecord& record = problem.empty() ? run.process(frame->index, frame->time_ns, frame->grey)
                                                 : run.skip(frame->index, frame->time_ns, problem);
     progress.show(record, count, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
@@ -119,11 +123,62 @@ void processAll(FrameSource& source, const Camera& camera, LockstepRun& run) {
   progress.end();
 }
 
-void saveMapOf(const LockstepRun& run, const Camera& camera, const std::string& path) {
-  if (run.map().points.empty()) {
+RunDecisions runDecisions(const Decisions& recorded) {
+  RunDecisions decisions;
+  for (const UpdateTaken& update : recorded.updates) decisions.updates[update.frame_index] = update.number;
+  for (const CorrectionApplied& correction : recorded.corrections) {
+    decisions.corrections[correction.message].push_back(correction.number);
+    decisions.snapshots.insert(correction.number);
+  }
+  return decisions;
+}
+
+// A run and the map that it leaves.
+struct Replayed {
+  RunResult result;
+  Map map;
+};
+
+Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Settings& settings,
+                          const ReplayArguments& arguments) {
+  LockstepRun run(camera, settings, source.size(), arguments.drawings);
+  if (const auto* recording = dynamic_cast<const RecordingSource*>(&source)) {
+    const Decisions& decisions = recording->recording().decisions;
+    if (!decisions.note.empty()) std::cerr << "edgeslam: " << decisions.note << "\n";
+    if (decisions.not_recorded == 0) run.repeat(runDecisions(decisions));
+  }
+  if (!arguments.map_in.empty()) run.goOnWith(loadMap(arguments.map_in, camera));
+  processAll(source, camera, run);
+  Replayed replayed;
+  replayed.result = run.finish();
+  replayed.map = run.map();
+  return replayed;
+}
+
+Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Configuration& configuration,
+                          const ReplayArguments& arguments) {
+  LiveReplay replay;
+  if (!arguments.map_in.empty()) replay.map_in = loadMap(arguments.map_in, camera);
+  replay.record_folder = arguments.record;
+  replay.description = {camera, formatConfiguration(configuration), EDGESLAM_VERSION};
+  Progress progress(source.size());
+  std::int64_t count = 0, first_ns = 0;
+  replay.progress = [&](const FrameResult& frame, const std::string& problem) {
+    if (count++ == 0) first_ns = frame.time_ns;
+    if (!problem.empty()) tellSkipped(frame.index, problem, progress);
+    progress.show(frame, count, static_cast<double>(frame.time_ns - first_ns) * 1e-9);
+  };
+  LiveReplayResult live = replayLive(source, camera, configuration.settings, replay);
+  progress.end();
+  if (!live.recording.empty()) std::cerr << "edgeslam: " << arguments.record << ": " << live.recording << "\n";
+  return {std::move(live.run), std::move(live.map)};
+}
+
+void saveMapOf(const Map& map, const Camera& camera, const std::string& path) {
+  if (map.points.empty()) {
     std::cerr << "edgeslam: " << path << " is not written: no map came to stand\n";
   } else {
-    saveMap(path, camera, run.map());
+    saveMap(path, camera, map);
   }
 }
 
@@ -144,6 +199,8 @@ void tell(const RunResult& result, const std::optional<Trajectory>& ground_truth
               seconds / std::max(1e-9, result.wall_s));
   if (result.unreadable_frames > 0)
     std::printf("%lld frames could not be read and were skipped\n", static_cast<long long>(result.unreadable_frames));
+  if (result.dropped_frames > 0)
+    std::printf("%lld frames were dropped, newer ones being there\n", static_cast<long long>(result.dropped_frames));
   if (posed == 0) {
     std::printf("no pose: %s\n", frames.empty() ? "no frame" : frames.back().reason.c_str());
     return;
@@ -181,10 +238,21 @@ void requireWritable(const std::string& folder) {
   }
 }
 
+// A recording brings the configuration that it was made with.
+Configuration configurationOf(const ReplayArguments& arguments, const FrameSource& source) {
+  if (!arguments.configuration.empty()) return readConfiguration(arguments.configuration);
+  if (const auto* recording = dynamic_cast<const RecordingSource*>(&source)) {
+    return readConfiguration(recording->recording().configuration_path);
+  }
+  return Configuration();
+}
+
 int runReplay(const ReplayArguments& arguments) {
-  const Configuration configuration =
-      arguments.configuration.empty() ? Configuration() : readConfiguration(arguments.configuration);
+  if (!arguments.record.empty() && !arguments.realtime) {
+    throw InputError("--record: only what runs live can be recorded, add --realtime");
+  }
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
+  const Configuration configuration = configurationOf(arguments, *source);
   const Camera camera = cameraOf(*source, configuration, arguments.input);
   std::optional<Trajectory> ground_truth;
   if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
@@ -192,10 +260,9 @@ int runReplay(const ReplayArguments& arguments) {
   requireWritable(arguments.output);
   if (!arguments.map_out.empty()) requireMapCanBeSaved(arguments.map_out);
   const auto start = std::chrono::steady_clock::now();
-  LockstepRun run(camera, configuration.settings, source->size(), arguments.drawings);
-  if (!arguments.map_in.empty()) run.goOnWith(loadMap(arguments.map_in, camera));
-  processAll(*source, camera, run);
-  RunResult result = run.finish();
+  Replayed replayed = arguments.realtime ? replayInRealTime(*source, camera, configuration, arguments)
+                                         : replayInLockstep(*source, camera, configuration.settings, arguments);
+  RunResult& result = replayed.result;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (result.unreadable_frames == static_cast<std::int64_t>(result.frames.size())) {
     throw InputError(arguments.input + ": not one frame could be read");
@@ -203,7 +270,7 @@ int runReplay(const ReplayArguments& arguments) {
   writeRunFiles(arguments.output, result, describe(arguments, configuration), ground_truth);
   tell(result, ground_truth, arguments.output);
   // Last: where the map cannot be written, the results are there all the same.
-  if (!arguments.map_out.empty()) saveMapOf(run, camera, arguments.map_out);
+  if (!arguments.map_out.empty()) saveMapOf(replayed.map, camera, arguments.map_out);
   const bool any_pose = std::any_of(result.frames.begin(), result.frames.end(),
                                     [](const FrameRecord& frame) { return frame.has_final_pose; });
   return any_pose ? exit_done : exit_failed;
@@ -220,7 +287,7 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   command
       ->add_option("INPUT", arguments->input,
                    "TUM RGB-D, ICL-NUIM or EuRoC folder, folder with a video and times.txt, folder of images named by "
-                   "time stamp, or video file")
+                   "time stamp, video file, or recording of a live run, which is then repeated to the last bit")
       ->required();
   command->add_option("--config", arguments->configuration, "Configuration file (YAML); without it the defaults");
   command->add_option("--output", arguments->output, "Folder for the results")->capture_default_str();
@@ -229,6 +296,10 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
                    "Saved map of the same camera: its frames are looked for in it, and it is gone on with")
       ->check(named);
   command->add_option("--map-out", arguments->map_out, "File to save the map to at the end")->check(named);
+  command->add_flag("--realtime", arguments->realtime,
+                    "At the pace of the time stamps, as on the robot: what the computer does not manage is dropped");
+  command->add_option("--record", arguments->record, "With --realtime: folder for a recording that repeats this run")
+      ->check(named);
   command->add_option("--drawings", arguments->drawings, "Frames drawn with edges and tracks in the report")
       ->capture_default_str()
       ->check(CLI::Range(0, 200));

@@ -47,6 +47,23 @@ std::vector<StageSummary> allStages(const RunResult& result) {
   return stages;
 }
 
+std::optional<StageSummary> latencyOf(const RunResult& result) {
+  std::vector<double> latencies;
+  for (const FrameRecord& frame : result.frames) {
+    if (frame.latency_ms >= 0) latencies.push_back(frame.latency_ms);
+  }
+  if (latencies.empty()) return std::nullopt;
+  return summaryOf("latency", std::move(latencies));
+}
+
+ordered_json timesJson(const StageSummary& times) {
+  return {{"frames", times.frames},
+          {"mean", times.mean},
+          {"p50", times.median},
+          {"p99", times.percentile_99},
+          {"max", times.max}};
+}
+
 // Too few poses to compare is a result, not bad input, when a run is summed up.
 std::optional<AbsoluteError> errorIfComparable(const Trajectory& estimate, const Trajectory& reference) {
   try {
@@ -130,6 +147,7 @@ RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& g
   summary.wall_s = result.wall_s;
   if (result.wall_s > 0) summary.real_time_ratio = summary.recording_s / result.wall_s;
   summary.stages = allStages(result);
+  summary.latency = latencyOf(result);
   summary.has_ground_truth = ground_truth.has_value();
   if (ground_truth) {
     summary.errors.trajectory = errorIfComparable(finalTrajectory(result), *ground_truth);
@@ -148,11 +166,7 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
   for (const auto& [state, count] : summary.states) states[stateName(state)] = count;
   ordered_json stages = ordered_json::object();
   for (const StageSummary& stage : summary.stages) {
-    stages[stage.name] = {{"frames", stage.frames},
-                          {"mean", stage.mean},
-                          {"p50", stage.median},
-                          {"p99", stage.percentile_99},
-                          {"max", stage.max}};
+    stages[stage.name] = timesJson(stage);
   }
   ordered_json loops = ordered_json::array();
   for (std::size_t i = 0; i < result.closed_loops.size(); ++i) {
@@ -175,6 +189,7 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
           {"frames",
            {{"total", summary.frames},
             {"unreadable", summary.unreadable_frames},
+            {"dropped", result.dropped_frames},
             {"with_pose", summary.final_poses},
             {"with_live_pose", summary.live_poses}}},
           {"states", states},
@@ -191,6 +206,7 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
           {"events", result.events},
           {"absolute_trajectory_error", errors},
           {"stage_times_ms", stages},
+          {"latency_ms", summary.latency ? timesJson(*summary.latency) : ordered_json()},
           {"recording_s", summary.recording_s},
           {"wall_s", summary.wall_s},
           {"real_time_ratio", summary.real_time_ratio},

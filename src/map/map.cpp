@@ -10,6 +10,14 @@ const PointObservation* findObservation(const Keyframe& keyframe, PointId point)
   return found != keyframe.observations.end() && found->point == point ? &*found : nullptr;
 }
 
+PointId firstFreePoint(const Map& map) {
+  PointId first = 0;
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (!keyframe.observations.empty()) first = std::max(first, keyframe.observations.back().point + 1);
+  }
+  return first;
+}
+
 std::vector<int> sharedPoints(const Map& map, KeyframeId keyframe) {
   std::vector<int> shared(numberOfKeyframes(map), 0);
   for (const PointObservation& observation : map.keyframes[keyframe].observations) {

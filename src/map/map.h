@@ -40,6 +40,9 @@ inline std::size_t numberOfKeyframes(const Map& map) {
   return map.keyframes.empty() ? 0 : static_cast<std::size_t>(map.keyframes.back().id) + 1;
 }
 
+// One over the largest number of a track that any keyframe saw.
+PointId firstFreePoint(const Map& map);
+
 // P18: number of map points that each keyframe shares with `keyframe`, by keyframe number (0 for itself).
 std::vector<int> sharedPoints(const Map& map, KeyframeId keyframe);
 

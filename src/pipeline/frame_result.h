@@ -22,6 +22,7 @@ struct FrameResult {
   int tracked_points = 0;
   int mapped_points = 0;
   StageTimes times;
+  double latency_ms = 0;  // of a live run: from the frame's handing over by capture to its pose
 };
 
 }  // namespace edgeslam

@@ -14,14 +14,6 @@ double millisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-PointId largestPoint(const Map& map) {
-  PointId largest = -1;
-  for (const Keyframe& keyframe : map.keyframes) {
-    if (!keyframe.observations.empty()) largest = std::max(largest, keyframe.observations.back().point);
-  }
-  return largest;
-}
-
 }  // namespace
 
 LockstepRun::LockstepRun(const Camera& camera, const Settings& settings, std::int64_t expected_frames, int drawings)
@@ -38,14 +30,14 @@ LockstepRun::LockstepRun(const Camera& camera, const Settings& settings, std::in
 }
 
 void LockstepRun::goOnWith(Map map) {
-  const PointId first_free_point = largestPoint(map) + 1;
+  const PointId first_free_point = firstFreePoint(map);
   record_.goOnFrom(map.keyframes.back().id + 1);
   mapping_.goOnWith(std::move(map));
   tracking_.goOnWith(mapping_.mapper().view(), first_free_point);
 }
 
 const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
-  takeDueUpdates();
+  takeDueUpdate(index);
   messages_.clear();
   FrameRecord& frame = record_.add(tracking_.process(index, time_ns, grey, messages_), /*unreadable=*/false);
   const auto start = std::chrono::steady_clock::now();
@@ -58,33 +50,58 @@ const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns
 }
 
 const FrameRecord& LockstepRun::skip(std::int64_t index, std::int64_t time_ns, const std::string& problem) {
-  takeDueUpdates();
+  takeDueUpdate(index);
   ++processed_;
   return record_.add(tracking_.skip(index, time_ns, problem), /*unreadable=*/true);
 }
 
 // The newest of those due; what it knows includes what the others knew.
-void LockstepRun::takeDueUpdates() {
+void LockstepRun::takeDueUpdate(std::int64_t frame_index) {
   std::optional<MapUpdate> newest;
-  for (; !updates_.empty() && updates_.front().due <= processed_; updates_.pop_front()) {
+  for (; !updates_.empty() && isDue(updates_.front(), frame_index); updates_.pop_front()) {
     newest = std::move(updates_.front().update);
   }
   if (newest) tracking_.take(*newest);
 }
 
+bool LockstepRun::isDue(const DueUpdate& update, std::int64_t frame_index) const {
+  if (!recorded_) return update.due <= processed_;
+  const auto taken = recorded_->updates.find(frame_index);
+  return taken != recorded_->updates.end() && update.update.number <= taken->second;
+}
+
 void LockstepRun::hand(const MappingMessage& message) {
-  if (!message.lost) applyDueCorrections(keyframes_ + 1);
+  if (!recorded_ && !message.lost) applyDueCorrections(keyframes_ + 1);
   remember(mapping_.handle(message));
-  if (std::optional<Snapshot> snapshot = mapping_.snapshot()) {
+  if (mapping_.hasNewKeyframe()) {
     ++keyframes_;
-    snapshots_.push_back({keyframes_ + settings_.correction_delay_keyframes, std::move(*snapshot)});
+    Snapshot snapshot = *mapping_.snapshot();
+    if (isWanted(snapshot)) {
+      snapshots_.push_back({keyframes_ + settings_.correction_delay_keyframes, std::move(snapshot)});
+    }
   }
+  if (recorded_) applyRecordedCorrections(message.number + 1);
+}
+
+bool LockstepRun::isWanted(const Snapshot& snapshot) const {
+  return !recorded_ || recorded_->snapshots.count(snapshot.number) > 0;
 }
 
 // Those due before keyframe number `keyframes`.
 void LockstepRun::applyDueCorrections(std::int64_t keyframes) {
   for (; !snapshots_.empty() && snapshots_.front().due <= keyframes; snapshots_.pop_front()) {
     remember(mapping_.apply(places_.work(snapshots_.front().snapshot)));
+  }
+}
+
+// Those applied before `message`.
+void LockstepRun::applyRecordedCorrections(std::int64_t message) {
+  const auto applied = recorded_->corrections.find(message);
+  if (applied == recorded_->corrections.end()) return;
+  for (const std::int64_t number : applied->second) {
+    if (snapshots_.empty() || snapshots_.front().snapshot.number != number) return;  // the recording is of another run
+    remember(mapping_.apply(places_.work(snapshots_.front().snapshot)));
+    snapshots_.pop_front();
   }
 }
 
@@ -111,7 +128,7 @@ void LockstepRun::draw(const cv::Mat& grey, const FrameRecord& record) {
 }
 
 void LockstepRun::settle() {
-  applyDueCorrections(std::numeric_limits<std::int64_t>::max());
+  if (!recorded_) applyDueCorrections(std::numeric_limits<std::int64_t>::max());
   for (MappingReport& report : mapping_.takeReports()) record_.add(std::move(report));
 }
 

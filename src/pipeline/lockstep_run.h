@@ -1,5 +1,5 @@
-// The lockstep schedule (design, section 4): tracking, mapping and places exchange values at fixed frames, so that a
-// run is a pure function of its input.
+// Runs that are a pure function of their input (design, section 4). In lockstep, tracking, mapping and places exchange
+// values at fixed frames; a run that repeats a live one exchanges them where that one did.
 #pragma once
 
 #include <deque>
@@ -7,6 +7,7 @@
 
 #include "pipeline/mapping_worker.h"
 #include "pipeline/places_worker.h"
+#include "pipeline/run_decisions.h"
 #include "pipeline/run_record.h"
 #include "pipeline/tracking_worker.h"
 
@@ -17,6 +18,8 @@ class LockstepRun {
   // `drawings`: about so many frames are drawn for the report, out of `expected_frames` (0: unknown, one every 100).
   LockstepRun(const Camera& camera, const Settings& settings, std::int64_t expected_frames, int drawings);
 
+  // Before the first frame: repeats a live run, whose frames are given as it processed them.
+  void repeat(RunDecisions decisions) { recorded_ = std::move(decisions); }
   // Before the first frame: goes on with a map made earlier, of the same camera. The camera is somewhere in it.
   void goOnWith(Map map);
   // The map as it is now; without keyframes where none stands yet.
@@ -41,13 +44,17 @@ class LockstepRun {
     Snapshot snapshot;
   };
 
-  void takeDueUpdates();
+  void takeDueUpdate(std::int64_t frame_index);
+  bool isDue(const DueUpdate& update, std::int64_t frame_index) const;
   void hand(const MappingMessage& message);
+  bool isWanted(const Snapshot& snapshot) const;
   void applyDueCorrections(std::int64_t keyframes);
+  void applyRecordedCorrections(std::int64_t message);
   void remember(std::optional<MapUpdate> update);
   void draw(const cv::Mat& grey, const FrameRecord& record);
 
   Settings settings_;
+  std::optional<RunDecisions> recorded_;
   TrackingWorker tracking_;
   MappingWorker mapping_;
   PlacesWorker places_;

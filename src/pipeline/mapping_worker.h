@@ -26,8 +26,11 @@ class MappingWorker {
   // What places made of a snapshot of the map, in the order of the snapshots.
   std::optional<MapUpdate> apply(const Correction& correction);
 
-  // The map for places, after a message that brought a keyframe.
+  // The last message brought a keyframe: the map for places.
+  bool hasNewKeyframe() const { return new_keyframe_; }
   std::optional<Snapshot> snapshot() const;
+  // Number of the last message, -1 before the first.
+  std::int64_t lastMessage() const { return last_message_; }
   // What was done since this was last asked.
   std::vector<MappingReport> takeReports() { return std::exchange(reports_, {}); }
 

@@ -2,6 +2,8 @@
 // due (P20). Gives corrections; the map itself is mapping's.
 #pragma once
 
+#include <atomic>
+
 #include "mapping/global_adjustment.h"
 #include "pipeline/messages.h"
 #include "pipeline/settings.h"
@@ -17,6 +19,9 @@ class PlacesWorker {
   // Snapshots in the order of their numbers, not necessarily all.
   Correction work(const Snapshot& snapshot);
 
+  // From any thread: the adjustment of the whole map that is under way is given up, and none is begun.
+  void interrupt(bool interrupted) { interrupted_.store(interrupted, std::memory_order_relaxed); }
+
  private:
   enum class Meeting { none, first, longer };
 
@@ -27,6 +32,7 @@ class PlacesWorker {
   Camera camera_;
   Settings settings_;
   LoopClosing loop_closing_;
+  std::atomic<bool> interrupted_{false};
   std::int64_t origin_frame_ = -1;   // of the map's first keyframe
   KeyframeId last_met_ = -1;         // latest keyframe that met an old part of the map ...
   KeyframeId last_shared_out_ = -1;  // ... and the latest at which the drift was shared out for it

@@ -20,6 +20,7 @@ FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
   record.tracked_points = frame.tracked_points;
   record.mapped_points = frame.mapped_points;
   record.times = frame.times;
+  if (frame.latency_ms > 0) record.latency_ms = static_cast<float>(frame.latency_ms);
   carried_.push_back({frame.reference, frame.reference_T_camera});
   result_.frames.push_back(std::move(record));
   return result_.frames.back();

@@ -46,6 +46,7 @@ struct FrameRecord {
   int mapped_points = 0;   // of these with depth and used for the pose
   bool is_keyframe = false;
   StageTimes times;
+  float latency_ms = -1;  // of a live run: from capture to the pose; negative: not known
 };
 
 struct KeyframeRecord {
@@ -97,7 +98,8 @@ struct RunResult {
   std::vector<ClosedLoop> closed_loops;
   std::string initialisation;  // how the map was started: method, pair, quality factor
   std::int64_t unreadable_frames = 0;
-  double wall_s = 0;  // of the whole run
+  std::int64_t dropped_frames = 0;  // of a live run
+  double wall_s = 0;                // of the whole run
 };
 
 }  // namespace edgeslam

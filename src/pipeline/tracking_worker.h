@@ -29,6 +29,9 @@ class TrackingWorker {
   // A frame that could not be read.
   FrameResult skip(std::int64_t index, std::int64_t time_ns, const std::string& problem) const;
 
+  // Of the frame processed last; shared and never changed again.
+  const cv::Mat& grey() const { return tracker_.latestImages().pyramid.levels[0]; }
+
   // For drawings.
   const Tracker& tracker() const { return tracker_; }
 

@@ -26,6 +26,7 @@ TrackingOutcome Tracker::track(std::int64_t frame_index, std::int64_t time_ns, c
   StageClock clock(outcome.times);
   lost_ = TrackedState();
   TrackedState frame = prepare(frame_index, time_ns, grey, clock);
+  latest_images_ = frame.images;
   if (isBlurred(blur_gate_, sharpness(grey, frame.edges), options_.blur_gate) && last_.images) {
     const StageTimes times = outcome.times;
     outcome = skip(time_ns, "blurred image");

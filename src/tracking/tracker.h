@@ -95,6 +95,9 @@ class Tracker {
   void resume(const MapView& view, const Pose& world_T_camera, const Matrix6d& covariance,
               const std::vector<FoundAgain>& points);
 
+  // Of the last frame, tracked or not. Valid after the first.
+  const FrameImages& latestImages() const { return *latest_images_; }
+
   // The last tracked frame, for drawings.
   const std::vector<Track>& tracks() const { return last_.tracks; }
   const EdgeMap& edges() const { return last_.edges; }
@@ -126,6 +129,7 @@ class Tracker {
   std::vector<RotationGrid> rotation_grids_;
   MapView view_;
   BlurGate blur_gate_;
+  std::shared_ptr<const FrameImages> latest_images_;
   TrackedState lost_;                // the current frame where its pose was not found
   TrackedState kept_;                // a lost frame that others look for
   std::int64_t lost_since_ns_ = -1;  // -1: not lost

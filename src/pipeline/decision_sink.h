@@ -1,0 +1,24 @@
+// Who writes down what a live run decided by the clock (the flight recorder). Called by tracking's thread between a
+// frame's pose and the next frame: it must not wait, lock or allocate.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+namespace edgeslam {
+
+class DecisionSink {
+ public:
+  virtual ~DecisionSink() = default;
+  // Before frame `frame_index` was processed, tracking took map update `number`.
+  virtual void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept = 0;
+  // Before message `message` was handled, mapping applied correction `number`.
+  virtual void appliedCorrection(std::int64_t message, std::int64_t number) noexcept = 0;
+  virtual void passedOver(std::int64_t index, std::int64_t time_ns) noexcept = 0;
+  // `grey` is shared and never changed again.
+  virtual void processed(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) noexcept = 0;
+  virtual void unreadable(std::int64_t index, std::int64_t time_ns, const std::string& problem) noexcept = 0;
+};
+
+}  // namespace edgeslam

@@ -1,0 +1,266 @@
+#include "pipeline/live_run.h"
+
+#include <cerrno>
+#include <chrono>
+#include <future>
+#include <utility>
+
+namespace edgeslam {
+namespace {
+
+constexpr auto idle_time = std::chrono::milliseconds(1);
+constexpr std::size_t most_messages_of_a_frame = 3;
+
+std::int64_t steadyNow_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+void waitFor(sem_t& semaphore) {
+  while (sem_wait(&semaphore) != 0 && errno == EINTR) {
+  }
+}
+
+}  // namespace
+
+LiveRun::LiveRun(const Camera& camera, const Settings& settings, const LiveOptions& options, LiveObserver observer,
+                 DecisionSink* sink)
+    : settings_(settings),
+      options_(options),
+      observer_(std::move(observer)),
+      sink_(sink),
+      tracking_(camera, settings),
+      mapping_(camera, settings),
+      places_(camera, settings),
+      frames_(camera.width, camera.height) {
+  sem_init(&frame_ready_, 0, 0);
+  sem_init(&result_ready_, 0, 0);
+}
+
+LiveRun::~LiveRun() {
+  stop(/*settle=*/false);
+  sem_destroy(&frame_ready_);
+  sem_destroy(&result_ready_);
+}
+
+void LiveRun::goOnWith(Map map) {
+  const PointId first_free_point = firstFreePoint(map);
+  mapping_.goOnWith(std::move(map));
+  tracking_.goOnWith(mapping_.mapper().view(), first_free_point);
+}
+
+void LiveRun::start() {
+  const auto startThread = [&](std::thread& thread, const ThreadSetup& setup, void (LiveRun::*work)()) {
+    std::promise<std::string> ready;
+    std::future<std::string> problem = ready.get_future();
+    thread = std::thread([this, setup, work, ready = std::move(ready)]() mutable {
+      ready.set_value(setUpThread(setup));
+      (this->*work)();
+    });
+    std::string told = problem.get();
+    if (!told.empty()) problems_.push_back(std::move(told));
+  };
+  startThread(publishing_thread_, options_.publishing, &LiveRun::publish);
+  startThread(places_thread_, options_.places, &LiveRun::lookAtPlaces);
+  startThread(mapping_thread_, options_.mapping, &LiveRun::map);
+  startThread(tracking_thread_, options_.tracking, &LiveRun::track);
+}
+
+void LiveRun::handOver() {
+  frames_.writing().handed_over_ns = steadyNow_ns();
+  frames_.publish();
+  captured_.fetch_add(1, std::memory_order_relaxed);
+  sem_post(&frame_ready_);
+}
+
+void LiveRun::stop(bool settle) {
+  if (!tracking_thread_.joinable()) return;
+  stopping_.store(settle ? Stopping::settle : Stopping::at_once, std::memory_order_release);
+  places_.interrupt(!settle);
+  sem_post(&frame_ready_);
+  for (std::thread* thread : {&tracking_thread_, &mapping_thread_, &places_thread_}) thread->join();
+  tellApplied();
+  sem_post(&result_ready_);
+  publishing_thread_.join();
+}
+
+LiveCounts LiveRun::counts() const {
+  LiveCounts counts;
+  counts.captured = captured_.load(std::memory_order_relaxed);
+  counts.processed = processed_.load(std::memory_order_relaxed);
+  counts.passed_over = passed_over_.load(std::memory_order_relaxed);
+  counts.mapping_behind = mapping_behind_.load(std::memory_order_relaxed);
+  counts.not_published = not_published_.load(std::memory_order_relaxed);
+  counts.messages_waiting = messages_.waiting();
+  return counts;
+}
+
+// Tracking's thread.
+
+void LiveRun::track() {
+  while (true) {
+    waitFor(frame_ready_);
+    const bool stopping = stopping_.load(std::memory_order_acquire) != Stopping::no;
+    if (frames_.take()) trackFrame(frames_.reading());
+    if (stopping) break;
+  }
+  tracking_ended_.store(true, std::memory_order_release);
+}
+
+void LiveRun::trackFrame(FrameSlot& slot) {
+  PassedOverFrame passed_over;
+  while (frames_.nextPassedOver(passed_over)) {
+    passed_over_.fetch_add(1, std::memory_order_relaxed);
+    if (sink_) sink_->passedOver(passed_over.index, passed_over.time_ns);
+  }
+  if (messages_.room() < most_messages_of_a_frame) {
+    passed_over_.fetch_add(1, std::memory_order_relaxed);
+    mapping_behind_.fetch_add(1, std::memory_order_relaxed);
+    if (sink_) sink_->passedOver(slot.index, slot.time_ns);
+    return;
+  }
+  takeUpdate(slot.index);
+  new_messages_.clear();
+  FrameResult result = slot.problem.empty() ? tracking_.process(slot.index, slot.time_ns, slot.grey, new_messages_)
+                                            : tracking_.skip(slot.index, slot.time_ns, slot.problem);
+  result.latency_ms = static_cast<double>(steadyNow_ns() - slot.handed_over_ns) * 1e-6;
+  if (Published* published = results_.claim()) {
+    published->result = std::move(result);
+    published->problem = slot.problem;
+    results_.send(published);
+    sem_post(&result_ready_);
+  } else {
+    not_published_.fetch_add(1, std::memory_order_relaxed);
+  }
+  for (MappingMessage& message : new_messages_) {
+    MappingMessage* sent = messages_.claim();
+    *sent = std::move(message);
+    messages_.send(sent);
+  }
+  if (sink_ && slot.problem.empty()) sink_->processed(slot.index, slot.time_ns, tracking_.grey());
+  if (sink_ && !slot.problem.empty()) sink_->unreadable(slot.index, slot.time_ns, slot.problem);
+  processed_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void LiveRun::takeUpdate(std::int64_t frame_index) {
+  if (!updates_.take()) return;
+  tellApplied();
+  tracking_.take(updates_.reading());
+  if (sink_) sink_->tookUpdate(frame_index, updates_.reading().number);
+}
+
+// Before the update that follows from it is told.
+void LiveRun::tellApplied() {
+  Applied applied;
+  while (applied_.pop(applied)) {
+    if (sink_) sink_->appliedCorrection(applied.message, applied.number);
+  }
+}
+
+// Mapping's thread.
+
+void LiveRun::map() {
+  while (true) {
+    const bool tracking_ended = tracking_ended_.load(std::memory_order_acquire);
+    const bool at_once = stopping_.load(std::memory_order_acquire) == Stopping::at_once;
+    if (at_once && tracking_ended) break;
+    if (mapOnce()) continue;
+    if (tracking_ended && with_places_ == 0) break;
+    std::this_thread::sleep_for(idle_time);
+  }
+  mapping_ended_.store(true, std::memory_order_release);
+}
+
+// One correction or one message; false where there is none.
+bool LiveRun::mapOnce() {
+  if (Correction* correction = corrections_.receive()) {
+    applied_.push({mapping_.lastMessage() + 1, correction->number});
+    publishUpdate(mapping_.apply(*correction));
+    *correction = Correction();
+    corrections_.release(correction);
+    --with_places_;
+  } else if (MappingMessage* message = messages_.receive()) {
+    publishUpdate(mapping_.handle(*message));
+    *message = MappingMessage();
+    messages_.release(message);
+    handSnapshot();
+  } else {
+    return false;
+  }
+  for (MappingReport& report : mapping_.takeReports()) {
+    if (MappingReport* sent = reports_.claim()) {
+      *sent = std::move(report);
+      reports_.send(sent);
+      sem_post(&result_ready_);
+    }
+  }
+  return true;
+}
+
+void LiveRun::publishUpdate(std::optional<MapUpdate> update) {
+  if (!update) return;
+  updates_.writing() = std::move(*update);
+  updates_.publish();
+}
+
+// Places works on one snapshot at a time; keyframes that come meanwhile are in the next one.
+void LiveRun::handSnapshot() {
+  if (!mapping_.hasNewKeyframe()) return;
+  Snapshot* sent = snapshots_.claim();
+  if (!sent) return;
+  ++with_places_;
+  *sent = *mapping_.snapshot();
+  snapshots_.send(sent);
+}
+
+// Places' thread.
+
+void LiveRun::lookAtPlaces() {
+  while (true) {
+    const bool mapping_ended = mapping_ended_.load(std::memory_order_acquire);
+    Snapshot* snapshot = snapshots_.receive();
+    if (!snapshot) {
+      if (mapping_ended) break;
+      std::this_thread::sleep_for(idle_time);
+      continue;
+    }
+    Correction correction = places_.work(*snapshot);
+    *snapshot = Snapshot();
+    if (Correction* sent = corrections_.claim()) {
+      *sent = std::move(correction);
+      corrections_.send(sent);
+    }
+    snapshots_.release(snapshot);
+    if (mapping_ended) break;
+  }
+}
+
+// Publishing's thread.
+
+void LiveRun::publish() {
+  while (true) {
+    waitFor(result_ready_);
+    while (publishOnce()) {
+    }
+    if (mapping_ended_.load(std::memory_order_acquire) && tracking_ended_.load(std::memory_order_acquire) &&
+        results_.waiting() == 0 && reports_.waiting() == 0) {
+      break;
+    }
+  }
+}
+
+bool LiveRun::publishOnce() {
+  if (Published* published = results_.receive()) {
+    if (observer_.frame) observer_.frame(published->result, published->problem);
+    results_.release(published);
+    return true;
+  }
+  if (MappingReport* report = reports_.receive()) {
+    if (observer_.report) observer_.report(*report);
+    reports_.release(report);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,126 @@
+// The live schedule (design, section 4): capture, tracking, mapping, places and publishing in threads of their own;
+// each takes what the others made as it comes, and none waits for another. What was decided by the clock goes to the
+// flight recorder, so that the run can be repeated.
+#pragma once
+
+#include <semaphore.h>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "pipeline/channel.h"
+#include "pipeline/decision_sink.h"
+#include "pipeline/frame_slots.h"
+#include "pipeline/mapping_worker.h"
+#include "pipeline/places_worker.h"
+#include "pipeline/thread_setup.h"
+#include "pipeline/tracking_worker.h"
+#include "pipeline/triple_buffer.h"
+
+namespace edgeslam {
+
+struct LiveOptions {
+  ThreadSetup tracking{"tracking", 0, 0, false, {}};
+  ThreadSetup publishing{"publishing", 0, 0, false, {}};
+  ThreadSetup mapping{"mapping", 0, 0, false, {}};
+  ThreadSetup places{"places", 0, 5, true, {}};
+};
+
+// Called by the publishing thread, in the order of the frames.
+struct LiveObserver {
+  std::function<void(const FrameResult&, const std::string& problem)> frame;  // `problem`: why it could not be read
+  std::function<void(const MappingReport&)> report;
+};
+
+// Counters of a run, as of now.
+struct LiveCounts {
+  std::int64_t captured = 0;
+  std::int64_t processed = 0;
+  std::int64_t passed_over = 0;     // a newer frame was there when tracking came to take it
+  std::int64_t mapping_behind = 0;  // of these: mapping's queue was full
+  std::int64_t not_published = 0;   // results for which the publishing queue was full
+  std::size_t messages_waiting = 0;
+};
+
+class LiveRun {
+ public:
+  // `sink` may be null; it must outlive the run.
+  LiveRun(const Camera& camera, const Settings& settings, const LiveOptions& options, LiveObserver observer,
+          DecisionSink* sink);
+  // Stops without settling.
+  ~LiveRun();
+  LiveRun(const LiveRun&) = delete;
+  LiveRun& operator=(const LiveRun&) = delete;
+
+  // Before the start: goes on with a map made earlier.
+  void goOnWith(Map map);
+  void start();
+
+  // The capture thread's: fill the slot, then hand it over. Never waits.
+  FrameSlot& nextSlot() { return frames_.writing(); }
+  void handOver();
+
+  // No frames are handed over any more. `settle`: mapping and places finish what they were given; otherwise they leave
+  // it where it is, within 1 s. The map is final then.
+  void stop(bool settle);
+
+  LiveCounts counts() const;
+  // What could not be set up of the threads, a line each. After start().
+  std::vector<std::string> problems() const { return problems_; }
+  // After stop().
+  const Mapper& mapper() const { return mapping_.mapper(); }
+
+ private:
+  struct Published {
+    FrameResult result;
+    std::string problem;
+  };
+  struct Applied {
+    std::int64_t message = 0, number = 0;
+  };
+  enum class Stopping { no, settle, at_once };
+
+  void track();
+  void trackFrame(FrameSlot& slot);
+  void takeUpdate(std::int64_t frame_index);
+  void tellApplied();
+  void map();
+  bool mapOnce();
+  void publishUpdate(std::optional<MapUpdate> update);
+  void handSnapshot();
+  void lookAtPlaces();
+  void publish();
+  bool publishOnce();
+
+  Settings settings_;
+  LiveOptions options_;
+  LiveObserver observer_;
+  DecisionSink* sink_;
+  TrackingWorker tracking_;
+  MappingWorker mapping_;
+  PlacesWorker places_;
+
+  FrameSlots frames_;                                   // capture to tracking
+  Channel<MappingMessage> messages_{64};                // tracking to mapping
+  TripleBuffer<MapUpdate> updates_;                     // mapping to tracking
+  boost::lockfree::spsc_queue<Applied> applied_{1024};  // mapping to tracking, for the sink
+  Channel<Snapshot> snapshots_{1};                      // mapping to places
+  Channel<Correction> corrections_{2};                  // places to mapping
+  Channel<Published> results_{256};                     // tracking to publishing
+  Channel<MappingReport> reports_{256};                 // mapping to publishing
+  sem_t frame_ready_, result_ready_;
+
+  std::vector<MappingMessage> new_messages_;  // tracking's alone
+  std::atomic<Stopping> stopping_{Stopping::no};
+  std::atomic<bool> tracking_ended_{false}, mapping_ended_{false};
+  std::int64_t with_places_ = 0;  // snapshots whose corrections mapping has not received yet; mapping's alone
+  std::atomic<std::int64_t> captured_{0}, processed_{0}, passed_over_{0}, mapping_behind_{0}, not_published_{0};
+  std::vector<std::string> problems_;
+  std::thread tracking_thread_, mapping_thread_, places_thread_, publishing_thread_;
+};
+
+}  // namespace edgeslam

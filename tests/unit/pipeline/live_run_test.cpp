@@ -1,0 +1,184 @@
+// The live schedule: what a run under load decided can be repeated to the last bit, nothing is lost that was to be
+// given out, and a run ends when it is told to.
+#include "pipeline/live_run.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "dataset/simulator.h"
+#include "pipeline/lockstep_run.h"
+#include "pipeline/run_record.h"
+
+namespace edgeslam {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr int frame_count = 70;
+
+struct MadeFrames {
+  SimulatedSequence sequence;
+  std::vector<cv::Mat> images;
+};
+
+// With a covered lens, so that a loss and what follows are among it.
+const MadeFrames& made() {
+  static const MadeFrames frames = [] {
+    SimulationOptions options;
+    options.scene = SceneKind::panels_textured;
+    options.frames = frame_count;
+    options.width = 320;
+    options.height = 240;
+    options.covered = {{45, 6}};
+    MadeFrames made{makeSequence(options), {}};
+    for (int i = 0; i < frame_count; ++i) made.images.push_back(made.sequence.frame(i).grey);
+    return made;
+  }();
+  return frames;
+}
+
+// Keeps all that was decided, as the flight recorder does.
+class KeptDecisions : public DecisionSink {
+ public:
+  void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept override {
+    decisions.updates[frame_index] = number;
+  }
+  void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override {
+    decisions.corrections[message].push_back(number);
+    decisions.snapshots.insert(number);
+  }
+  void passedOver(std::int64_t index, std::int64_t /*time_ns*/) noexcept override { passed_over.push_back(index); }
+  void processed(std::int64_t index, std::int64_t /*time_ns*/, const cv::Mat& grey) noexcept override {
+    frames.push_back(index);
+    images.push_back(grey);
+  }
+  void unreadable(std::int64_t index, std::int64_t /*time_ns*/, const std::string& /*problem*/) noexcept override {
+    frames.push_back(index);
+    images.emplace_back();
+  }
+
+  RunDecisions decisions;
+  std::vector<std::int64_t> frames, passed_over;
+  std::vector<cv::Mat> images;
+};
+
+struct LiveResult {
+  RunResult run;
+  LiveCounts counts;
+};
+
+// Until tracking and mapping have done what they were given.
+void waitUntilIdle(const LiveRun& live) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (std::chrono::steady_clock::now() < end) {
+    const LiveCounts counts = live.counts();
+    if (counts.processed + counts.passed_over == counts.captured && counts.messages_waiting == 0) return;
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+}
+
+// `interval` 0: each frame waits until the one before is done with.
+LiveResult runLive(DecisionSink* sink, milliseconds interval, int frames = frame_count, bool settle = true,
+                   int unreadable = -1) {
+  RunRecord record(made().sequence.camera);
+  LiveObserver observer;
+  observer.frame = [&](const FrameResult& frame, const std::string& problem) { record.add(frame, !problem.empty()); };
+  observer.report = [&](const MappingReport& report) { record.add(report); };
+  LiveRun live(made().sequence.camera, Settings(), LiveOptions(), observer, sink);
+  live.start();
+  for (int i = 0; i < frames; ++i) {
+    FrameSlot& slot = live.nextSlot();
+    slot.index = i;
+    slot.time_ns = made().sequence.time(i);
+    slot.problem = i == unreadable ? "torn" : "";
+    made().images[static_cast<std::size_t>(i)].copyTo(slot.grey);
+    live.handOver();
+    if (interval.count() == 0) waitUntilIdle(live);
+    std::this_thread::sleep_for(interval);
+  }
+  live.stop(settle);
+  return {record.finish(live.mapper()), live.counts()};
+}
+
+RunResult repeat(const KeptDecisions& kept) {
+  LockstepRun run(made().sequence.camera, Settings(), 0, 0);
+  run.repeat(kept.decisions);
+  for (std::size_t k = 0; k < kept.frames.size(); ++k) {
+    const std::int64_t index = kept.frames[k], time = made().sequence.time(static_cast<int>(index));
+    if (kept.images[k].empty()) {
+      run.skip(index, time, "torn");
+    } else {
+      run.process(index, time, kept.images[k]);
+    }
+  }
+  return run.finish();
+}
+
+void expectSameRun(const RunResult& a, const RunResult& b) {
+  ASSERT_EQ(a.frames.size(), b.frames.size());
+  for (std::size_t i = 0; i < a.frames.size(); ++i) {
+    EXPECT_EQ(a.frames[i].index, b.frames[i].index);
+    EXPECT_EQ(a.frames[i].state, b.frames[i].state) << a.frames[i].index;
+    EXPECT_EQ(a.frames[i].live_world_T_camera.translation, b.frames[i].live_world_T_camera.translation);
+    EXPECT_EQ(a.frames[i].live_world_T_camera.rotation.coeffs(), b.frames[i].live_world_T_camera.rotation.coeffs());
+    EXPECT_EQ(a.frames[i].final_world_T_camera.translation, b.frames[i].final_world_T_camera.translation);
+    EXPECT_EQ(a.frames[i].standard_deviation, b.frames[i].standard_deviation);
+  }
+  ASSERT_EQ(a.keyframes.size(), b.keyframes.size());
+  ASSERT_EQ(a.map_points.size(), b.map_points.size());
+  for (std::size_t i = 0; i < a.map_points.size(); ++i) EXPECT_EQ(a.map_points[i].position, b.map_points[i].position);
+}
+
+TEST(LiveRun, WhatItDecidedRepeatsItToTheLastBit) {
+  for (const int interval_ms : {12, 25, 4}) {  // the last is faster than tracking
+    KeptDecisions kept;
+    const LiveResult live = runLive(&kept, milliseconds(interval_ms), frame_count, true, /*unreadable=*/30);
+    EXPECT_EQ(live.run.frames.size(), kept.frames.size());
+    expectSameRun(live.run, repeat(kept));
+  }
+}
+
+TEST(LiveRun, AMapComesToStandAndIsGoneOnWith) {
+  const LiveResult live = runLive(nullptr, milliseconds(0));
+  EXPECT_EQ(live.counts.passed_over, 0);
+  int good = 0;
+  for (const FrameRecord& frame : live.run.frames) good += isGoodPose(frame.state);
+  EXPECT_GT(good, 15);
+  EXPECT_GT(live.run.map_points.size(), 100U);
+}
+
+TEST(LiveRun, EveryFrameIsProcessedOrToldAsPassedOver) {
+  KeptDecisions kept;
+  const LiveResult live = runLive(&kept, milliseconds(1));
+  std::vector<std::int64_t> all = kept.frames;
+  all.insert(all.end(), kept.passed_over.begin(), kept.passed_over.end());
+  std::sort(all.begin(), all.end());
+  ASSERT_FALSE(all.empty());
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], static_cast<std::int64_t>(i));
+  EXPECT_EQ(all.back(), frame_count - 1) << "the newest frame wins";
+  EXPECT_GT(kept.passed_over.size(), 5U) << "a frame a millisecond is too fast for any machine";
+  EXPECT_EQ(live.counts.captured, frame_count);
+  EXPECT_EQ(live.counts.processed + live.counts.passed_over, frame_count);
+  EXPECT_EQ(live.counts.not_published, 0);
+  EXPECT_EQ(static_cast<std::int64_t>(live.run.frames.size()), live.counts.processed);
+}
+
+TEST(LiveRun, EndsWithinASecondWhateverItIsDoing) {
+  for (const int frames : {0, 1, 5, 20, 40, 50}) {
+    const auto start = std::chrono::steady_clock::now();
+    runLive(nullptr, milliseconds(10), frames, /*settle=*/false);
+    const auto took = std::chrono::steady_clock::now() - start - milliseconds(10) * frames;
+    EXPECT_LT(took, milliseconds(2000)) << frames << " frames";  // a loaded machine, sanitizers
+  }
+}
+
+TEST(LiveRun, AnUnreadableFrameIsOneOfTheRun) {
+  KeptDecisions kept;
+  const LiveResult live = runLive(&kept, milliseconds(20), 10, true, /*unreadable=*/4);
+  EXPECT_EQ(live.run.unreadable_frames, 1);
+}
+
+}  // namespace
+}  // namespace edgeslam
