@@ -8,11 +8,7 @@ namespace edgeslam {
 namespace {
 
 constexpr float kLeastAgreement = 0.6F;  // dot product of the normals of two neighbours along an edge
-
-struct Links {
-  std::vector<int> ahead;
-  std::vector<int> behind;
-};
+constexpr int kTaken = -2;               // in place of the neighbour behind: the point is in a chain, or in no edge
 
 struct Step {
   int dx;
@@ -35,21 +31,20 @@ int octant(const Eigen::Vector2f& direction) {
   return kOctants[static_cast<size_t>(entry)];
 }
 
-// The best continuation of the point in pixel `cell` among the three pixels ahead in `direction`, or -1.
-int continuation(const std::vector<EdgePoint>& points, const cv::Mat& index, const cv::Point& cell,
+// The best continuation of `point` among the three pixels ahead in `direction`, or -1.
+int continuation(const std::vector<EdgePixel>& points, const cv::Mat& index, const EdgePixel& point,
                  const Eigen::Vector2f& direction) {
-  const EdgePoint& point = points[static_cast<size_t>(index.at<int>(cell))];
   const int straight = octant(direction);
   int best = -1;
   float least_cost = std::numeric_limits<float>::max();
   for (const int turn : {0, 1, 7}) {
     const Step& step = kRing[static_cast<size_t>((straight + turn) % 8)];
-    const int column = cell.x + step.dx;
-    const int row = cell.y + step.dy;
+    const int column = point.cell.x + step.dx;
+    const int row = point.cell.y + step.dy;
     if (column < 0 || row < 0 || column >= index.cols || row >= index.rows) continue;
     const int candidate = index.at<int>(row, column);
     if (candidate < 0) continue;
-    const EdgePoint& other = points[static_cast<size_t>(candidate)];
+    const EdgePixel& other = points[static_cast<size_t>(candidate)];
     if (point.normal.dot(other.normal) < kLeastAgreement) continue;
     const Eigen::Vector2f difference = other.pixel - point.pixel;
     if (difference.dot(direction) <= 0) continue;
@@ -67,70 +62,81 @@ int continuation(const std::vector<EdgePoint>& points, const cv::Mat& index, con
 }
 
 // Along `ahead` the edge runs a quarter turn from its normal.
-Eigen::Vector2f tangent(const EdgePoint& point) { return {-point.normal.y(), point.normal.x()}; }
+Eigen::Vector2f tangent(const EdgePixel& point) { return {-point.normal.y(), point.normal.x()}; }
 
-Links linkNeighbours(const std::vector<EdgePoint>& points, const std::vector<cv::Point>& cells, const cv::Mat& index) {
-  Links best{std::vector<int>(points.size(), -1), std::vector<int>(points.size(), -1)};
+bool isNamed(const cv::Mat& index, const EdgePixel& point, size_t i) {
+  return index.at<int>(point.cell) == static_cast<int>(i);
+}
+
+void chooseNeighbours(const cv::Mat& index, EdgeWorkspace& workspace) {
+  const std::vector<EdgePixel>& points = workspace.pixels.points;
   for (size_t i = 0; i < points.size(); ++i) {
-    if (index.at<int>(cells[i]) != static_cast<int>(i)) continue;
+    workspace.ahead[i] = -1;
+    workspace.behind[i] = kTaken;
+    if (!isNamed(index, points[i], i)) continue;
     const Eigen::Vector2f direction = tangent(points[i]);
-    best.ahead[i] = continuation(points, index, cells[i], direction);
-    best.behind[i] = continuation(points, index, cells[i], -direction);
+    workspace.ahead[i] = continuation(points, index, points[i], direction);
+    workspace.behind[i] = continuation(points, index, points[i], -direction);
   }
-  Links mutual = best;
-  for (size_t i = 0; i < points.size(); ++i) {
-    const int ahead = best.ahead[i];
-    if (ahead >= 0 && best.behind[static_cast<size_t>(ahead)] != static_cast<int>(i)) mutual.ahead[i] = -1;
-    const int behind = best.behind[i];
-    if (behind >= 0 && best.ahead[static_cast<size_t>(behind)] != static_cast<int>(i)) mutual.behind[i] = -1;
+}
+
+// Of the two ways of a choice only those stay that are mutual.
+void dropOneSided(std::vector<int>& ahead, std::vector<int>& behind) {
+  for (size_t i = 0; i < ahead.size(); ++i) {
+    const int next = ahead[i];
+    if (next >= 0 && behind[static_cast<size_t>(next)] != static_cast<int>(i)) ahead[i] = -1;
   }
-  return mutual;
+  for (size_t i = 0; i < behind.size(); ++i) {
+    const int previous = behind[i];
+    if (previous >= 0 && ahead[static_cast<size_t>(previous)] != static_cast<int>(i)) behind[i] = -1;
+  }
+}
+
+// Appends the chain that starts with the point `start` to `edges`.
+void takeChain(size_t start, int shortest_chain, EdgeWorkspace& workspace, EdgeMap& edges) {
+  const size_t first = edges.points.size();
+  auto at = static_cast<int>(start);
+  do {
+    const EdgePixel& source = workspace.pixels.points[static_cast<size_t>(at)];
+    const auto here = static_cast<int>(edges.points.size());
+    edges.index.at<int>(source.cell) = here;
+    edges.points.push_back({source.pixel, source.normal, source.gradient, edges.chain_count, here - 1, here + 1});
+    workspace.behind[static_cast<size_t>(at)] = kTaken;
+    at = workspace.ahead[static_cast<size_t>(at)];
+  } while (at >= 0 && workspace.behind[static_cast<size_t>(at)] != kTaken);
+  const size_t end = edges.points.size();
+  if (static_cast<int>(end - first) < shortest_chain) {
+    at = static_cast<int>(start);
+    for (size_t i = first; i < end; ++i) {
+      edges.index.at<int>(workspace.pixels.points[static_cast<size_t>(at)].cell) = -1;
+      at = workspace.ahead[static_cast<size_t>(at)];
+    }
+    edges.points.resize(first);
+    return;
+  }
+  const bool closed = at == static_cast<int>(start);
+  edges.points[first].previous = closed ? static_cast<int>(end) - 1 : -1;
+  edges.points[end - 1].next = closed ? static_cast<int>(first) : -1;
+  ++edges.chain_count;
 }
 
 }  // namespace
 
-EdgeMap joinChains(const std::vector<EdgePoint>& points, const std::vector<cv::Point>& cells, const cv::Mat& index,
-                   int shortest_chain) {
-  const Links links = linkNeighbours(points, cells, index);
-  EdgeMap edges;
-  edges.points.reserve(points.size());
-  edges.index = cv::Mat(index.size(), CV_32S, cv::Scalar(-1));
-  std::vector<char> visited(points.size(), 0);
-  std::vector<size_t> walk;
-
-  const auto takeChain = [&](size_t start) {
-    walk.clear();
-    int at = static_cast<int>(start);
-    while (at >= 0 && !visited[static_cast<size_t>(at)]) {
-      visited[static_cast<size_t>(at)] = 1;
-      walk.push_back(static_cast<size_t>(at));
-      at = links.ahead[static_cast<size_t>(at)];
-    }
-    if (static_cast<int>(walk.size()) < shortest_chain) return;
-    const bool closed = at == static_cast<int>(start);
-    const int first = static_cast<int>(edges.points.size());
-    const int last = first + static_cast<int>(walk.size()) - 1;
-    for (int i = first; i <= last; ++i) {
-      const size_t source = walk[static_cast<size_t>(i - first)];
-      EdgePoint point = points[source];
-      point.chain = edges.chain_count;
-      point.previous = i > first ? i - 1 : (closed ? last : -1);
-      point.next = i < last ? i + 1 : (closed ? first : -1);
-      edges.index.at<int>(cells[source]) = i;
-      edges.points.push_back(point);
-    }
-    ++edges.chain_count;
-  };
-
+void joinChains(int shortest_chain, EdgeWorkspace& workspace, EdgeMap& edges) {
+  const size_t count = workspace.pixels.points.size();
+  workspace.ahead.resize(count);
+  workspace.behind.resize(count);
+  chooseNeighbours(edges.index, workspace);
+  dropOneSided(workspace.ahead, workspace.behind);
+  edges.points.clear();
+  edges.chain_count = 0;
   // Open chains from their beginnings, in the order of the points; what then is left runs in circles.
-  for (const bool open : {true, false}) {
-    for (size_t i = 0; i < points.size(); ++i) {
-      if (visited[i] || index.at<int>(cells[i]) != static_cast<int>(i)) continue;
-      if (open && links.behind[i] >= 0) continue;
-      takeChain(i);
-    }
+  for (size_t i = 0; i < count; ++i) {
+    if (workspace.behind[i] == -1) takeChain(i, shortest_chain, workspace, edges);
   }
-  return edges;
+  for (size_t i = 0; i < count; ++i) {
+    if (workspace.behind[i] >= 0) takeChain(i, shortest_chain, workspace, edges);
+  }
 }
 
 }  // namespace edgeslam

@@ -6,16 +6,10 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-namespace edgeslam {
+#include "edges/edge_pixels.h"
+#include "image/difference_of_gaussians.h"
 
-struct EdgeOptions {
-  double sigma = 1.78;              // of the narrower Gaussian [px]
-  double sigma_ratio = 1.26;        // wider over narrower
-  int plane_fit_radius = 2;         // an edge is told by a plane fitted to (2 r + 1)^2 pixels of the DoG [px]
-  double sign_balance = 0.4;        // most |positive - negative| / all of the DoG's signs in that window
-  double gradient_threshold = 1.5;  // least grey-value gradient across the edge [grey/px]
-  int shortest_chain = 6;           // shorter chains are no edges [points]
-};
+namespace edgeslam {
 
 struct EdgePoint {
   Eigen::Vector2f pixel;   // sub-pixel [px]
@@ -34,7 +28,23 @@ struct EdgeMap {
   cv::Mat index;  // CV_32S, size of the image: index of the point in that pixel, or -1
 };
 
-// `grey` is CV_8U. An image without edges gives an empty map.
+// Memory of detectEdges, to be used for one image after the other; about 16 bytes a pixel.
+struct EdgeWorkspace {
+  DifferenceOfGaussians blurs;
+  EdgePixels pixels;
+  std::vector<int> ahead;  // of each pixel's best neighbours along the edge, as indices into pixels.points, or -1
+  std::vector<int> behind;
+};
+
+// An empty map with memory for every edge that an image of this size may have, 12 bytes a pixel.
+EdgeMap makeEdgeMap(const cv::Size& size);
+
+// `grey` is CV_8U. An image without edges gives an empty map; of an image with more edge points than mostEdgePoints
+// the lowest rows are left out. Allocates only where `workspace` was not used with these options for an image of this
+// size, or `edges` has not the memory of makeEdgeMap.
+void detectEdges(const cv::Mat& grey, const EdgeOptions& options, EdgeWorkspace& workspace, EdgeMap& edges);
+
+// The same in memory of its own.
 EdgeMap detectEdges(const cv::Mat& grey, const EdgeOptions& options);
 
 // Index of the edge point nearest to `pixel` within `radius` [px] whose normal agrees (dot product at least

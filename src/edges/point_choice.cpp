@@ -1,167 +1,152 @@
 #include "edges/point_choice.h"
 
 #include <algorithm>
-#include <array>
+#include <cassert>
 #include <climits>
 #include <cmath>
-
-#include "edges/point_spacing.h"
-#include "image/gradient.h"
 
 namespace edgeslam {
 namespace {
 
-constexpr int kStep = 2;  // along a chain every second edge point is a candidate: tensors change little in between
-constexpr int kNormalReach = 6;        // neighbours on each side over which a normal is averaged [points]
-constexpr int kDirections = 4;         // directions of an edge that are told apart, over half a turn
+constexpr size_t kDirections = 4;      // of an edge that are told apart, over half a turn
 constexpr float kLeastL2 = 1e-6F;      // [grey^2/px^2]
 constexpr float kUnknownAlong = 1000;  // standard deviation of a point that nothing holds along its edge [px]
 
-struct Candidate {
-  ChosenPoint point;
-  float gradient = 0;  // of its edge point [grey/px]
-};
-
-// The candidates of one grid cell: indices, best first, and how many points the cell has already.
-struct Cell {
-  std::vector<int> corners;
-  std::array<std::vector<int>, kDirections> edges;
-  std::array<int, kDirections> taken_of_direction{};
-  int taken = 0;
-};
-
-int directionOf(const Eigen::Vector2f& normal) {
+size_t directionOf(const Eigen::Vector2f& normal) {
   const float half_turns = std::atan2(normal.y(), normal.x()) / static_cast<float>(M_PI) + 1;
-  return static_cast<int>(std::lround(half_turns * kDirections)) % kDirections;
+  return static_cast<size_t>(std::lround(half_turns * static_cast<float>(kDirections))) % kDirections;
 }
 
-// Mean normal of an edge point and as many neighbours along the chain before as after it, so that a bend does not turn
-// it. A third as noisy as the point's own, and free of the skew that central differences give the tensor on sharp
-// edges.
-Eigen::Vector2f normalAlongChain(const EdgeMap& edges, const EdgePoint& edge) {
-  Eigen::Vector2f sum = edge.normal;
-  int before = edge.previous;
-  int after = edge.next;
-  for (int step = 0; step < kNormalReach && before >= 0 && after >= 0; ++step) {
-    const EdgePoint& behind = edges.points[static_cast<size_t>(before)];
-    const EdgePoint& ahead = edges.points[static_cast<size_t>(after)];
-    sum += behind.normal + ahead.normal;
-    before = behind.previous;
-    after = ahead.next;
-  }
-  const float length = sum.norm();
-  return length > 0 ? Eigen::Vector2f(sum / length) : edge.normal;
-}
-
-Candidate makeCandidate(const TwiceGradient& gradient, const EdgeMap& edges, const EdgePoint& edge,
-                        const PointChoiceOptions& options) {
-  Candidate candidate;
-  candidate.gradient = edge.gradient;
-  ChosenPoint& point = candidate.point;
-  point.pixel = edge.pixel;
-  point.tensor = structureTensor(gradient, edge.pixel, options.tensor_window);
-  point.chain = edge.chain;
-  const float l1 = point.tensor.l1;
-  const float l2 = point.tensor.l2;
-  point.corner = l2 > static_cast<float>(options.corner_ratio) * l1 && l2 > static_cast<float>(options.corner_strength);
-  if (point.corner) {
-    point.normal = point.tensor.direction.dot(edge.normal) < 0 ? -point.tensor.direction : point.tensor.direction;
-  } else {
-    point.normal = normalAlongChain(edges, edge);
-  }
+ChosenPoint makePoint(const PointCandidate& candidate, const PointChoiceOptions& options) {
+  ChosenPoint point;
+  point.pixel = candidate.pixel;
+  point.normal = candidate.normal;
+  point.tensor = candidate.tensor;
+  point.corner = candidate.corner;
+  point.chain = candidate.chain;
   point.sigma_normal = static_cast<float>(point.corner ? options.sigma_corner : options.sigma_edge);
-  const float informative_l2 = std::max(l2 - static_cast<float>(options.noise), kLeastL2);
-  point.sigma_tangent = std::min(point.sigma_normal * std::sqrt(std::max(1.0F, l1 / informative_l2)), kUnknownAlong);
-  return candidate;
+  const float informative_l2 = std::max(point.tensor.l2 - static_cast<float>(options.noise), kLeastL2);
+  const float stretch = std::sqrt(std::max(1.0F, point.tensor.l1 / informative_l2));
+  point.sigma_tangent = std::min(point.sigma_normal * stretch, kUnknownAlong);
+  return point;
 }
 
-std::vector<Candidate> findCandidates(const cv::Mat& grey, const EdgeMap& edges, const PointSpacing& spacing,
-                                      const PointChoiceOptions& options) {
-  const auto border = static_cast<float>(options.border);
-  const float right = static_cast<float>(grey.cols - 1) - border;
-  const float bottom = static_cast<float>(grey.rows - 1) - border;
-  const TwiceGradient gradient = twiceGradient(grey);
-  std::vector<Candidate> candidates;
-  candidates.reserve(edges.points.size() / kStep + 1);
-  for (size_t i = 0; i < edges.points.size(); i += kStep) {
-    const EdgePoint& edge = edges.points[i];
-    if (edge.pixel.x() < border || edge.pixel.y() < border || edge.pixel.x() > right || edge.pixel.y() > bottom)
-      continue;
-    if (spacing.isFree(edge.pixel)) candidates.push_back(makeCandidate(gradient, edges, edge, options));
-  }
-  return candidates;
-}
-
+// The grid cell in which a pixel lies; of those outside the image the nearest.
 class Grid {
  public:
   Grid(const cv::Size& size, int side)
-      : side_(std::max(side, 1)), columns_((size.width - 1) / side_ + 1), rows_((size.height - 1) / side_ + 1) {
-    const int count = columns_ * rows_;
-    cells_.resize(static_cast<size_t>(count));
-  }
+      : side_(std::max(side, 1)), columns_((size.width - 1) / side_ + 1), rows_((size.height - 1) / side_ + 1) {}
 
-  Cell& at(const Eigen::Vector2f& pixel) {
+  size_t indexOf(const Eigen::Vector2f& pixel) const {
     const auto side = static_cast<float>(side_);
     const auto column = static_cast<int>(std::clamp(pixel.x() / side, 0.0F, static_cast<float>(columns_ - 1)));
     const auto row = static_cast<int>(std::clamp(pixel.y() / side, 0.0F, static_cast<float>(rows_ - 1)));
     const int index = row * columns_ + column;
-    return cells_[static_cast<size_t>(index)];
+    return static_cast<size_t>(index);
   }
 
-  std::vector<Cell>& cells() { return cells_; }
+  size_t count() const {
+    const int cells = columns_ * rows_;
+    return static_cast<size_t>(cells);
+  }
 
  private:
   int side_;
   int columns_;
   int rows_;
-  std::vector<Cell> cells_;
 };
 
-Grid sortIntoCells(const cv::Size& size, const std::vector<Candidate>& candidates,
-                   const std::vector<Eigen::Vector2f>& occupied, int side) {
-  Grid grid(size, side);
+const PointCandidate& candidateOf(const PointChoiceWorkspace& workspace, int index) {
+  return workspace.candidates[static_cast<size_t>(index)];
+}
+
+// By what corner-like points are ranked, and by what the others are.
+float cornerStrength(const PointCandidate& candidate) { return candidate.tensor.l2; }
+float edgeStrength(const PointCandidate& candidate) { return candidate.gradient; }
+
+// The order within a heap: of equally strong candidates the later one is the better.
+template <typename Strength>
+auto weaker(const PointChoiceWorkspace& workspace, Strength strength) {
+  return [&workspace, strength](int a, int b) {
+    const float strength_a = strength(candidateOf(workspace, a));
+    const float strength_b = strength(candidateOf(workspace, b));
+    return strength_a < strength_b || (strength_a == strength_b && a < b);
+  };
+}
+
+RankedCandidates& edgesOf(ChoiceCell& cell, const PointCandidate& candidate) {
+  return cell.edges[directionOf(candidate.normal)];
+}
+
+// Lays the cells' lists out one after the other, each empty but with room for all that was counted in `end`.
+int layOut(std::vector<ChoiceCell>& cells) {
+  int begin = 0;
+  const auto place = [&](RankedCandidates& list) {
+    const int count = list.end;
+    list = {begin, begin};
+    begin += count;
+  };
+  for (ChoiceCell& cell : cells) {
+    place(cell.corners);
+    for (RankedCandidates& list : cell.edges) place(list);
+  }
+  return begin;
+}
+
+void sortIntoCells(const Grid& grid, const std::vector<Eigen::Vector2f>& occupied, PointChoiceWorkspace& workspace) {
+  std::vector<ChoiceCell>& cells = workspace.cells;
+  cells.assign(grid.count(), ChoiceCell());
   for (const Eigen::Vector2f& pixel : occupied) {
-    if (pixel.allFinite()) ++grid.at(pixel).taken;
+    if (pixel.allFinite()) ++cells[grid.indexOf(pixel)].taken;
   }
-  for (size_t i = 0; i < candidates.size(); ++i) {
-    Cell& cell = grid.at(candidates[i].point.pixel);
-    const auto index = static_cast<int>(i);
-    if (candidates[i].point.corner) cell.corners.push_back(index);
-    cell.edges[static_cast<size_t>(directionOf(candidates[i].point.normal))].push_back(index);
+  for (const PointCandidate& candidate : workspace.candidates) {
+    ChoiceCell& cell = cells[grid.indexOf(candidate.pixel)];
+    if (candidate.corner) ++cell.corners.end;
+    ++edgesOf(cell, candidate).end;
   }
-  const auto l2 = [&](int i) { return candidates[static_cast<size_t>(i)].point.tensor.l2; };
-  const auto gradient = [&](int i) { return candidates[static_cast<size_t>(i)].gradient; };
-  // The worst first, so that the best is taken from the end.
-  for (Cell& cell : grid.cells()) {
-    std::stable_sort(cell.corners.begin(), cell.corners.end(), [&](int a, int b) { return l2(a) < l2(b); });
-    for (auto& edges : cell.edges) {
-      std::stable_sort(edges.begin(), edges.end(), [&](int a, int b) { return gradient(a) < gradient(b); });
+  std::vector<int>& ranked = workspace.ranked;
+  ranked.resize(static_cast<size_t>(layOut(cells)));
+  for (size_t i = 0; i < workspace.candidates.size(); ++i) {
+    const PointCandidate& candidate = workspace.candidates[i];
+    ChoiceCell& cell = cells[grid.indexOf(candidate.pixel)];
+    if (candidate.corner) ranked[static_cast<size_t>(cell.corners.end++)] = static_cast<int>(i);
+    ranked[static_cast<size_t>(edgesOf(cell, candidate).end++)] = static_cast<int>(i);
+  }
+  for (const ChoiceCell& cell : cells) {
+    std::make_heap(ranked.begin() + cell.corners.begin, ranked.begin() + cell.corners.end,
+                   weaker(workspace, cornerStrength));
+    for (const RankedCandidates& list : cell.edges) {
+      std::make_heap(ranked.begin() + list.begin, ranked.begin() + list.end, weaker(workspace, edgeStrength));
     }
   }
-  return grid;
 }
 
 // Removes the best candidate of the list that has room, and returns its index; -1 when none is left.
-int takeBest(std::vector<int>& list, const std::vector<Candidate>& candidates, const PointSpacing& spacing) {
-  while (!list.empty()) {
-    const int best = list.back();
-    list.pop_back();
-    if (spacing.isFree(candidates[static_cast<size_t>(best)].point.pixel)) return best;
+template <typename Strength>
+int takeBest(PointChoiceWorkspace& workspace, Strength strength, RankedCandidates& list) {
+  while (list.begin < list.end) {
+    const auto heap = workspace.ranked.begin();
+    std::pop_heap(heap + list.begin, heap + list.end, weaker(workspace, strength));
+    const int best = workspace.ranked[static_cast<size_t>(--list.end)];
+    if (workspace.spacing.isFree(candidateOf(workspace, best).pixel)) return best;
   }
   return -1;
 }
 
-int bestCorner(Cell& cell, const std::vector<Candidate>& candidates, const PointSpacing& spacing) {
-  return takeBest(cell.corners, candidates, spacing);
+int bestCorner(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
+  return takeBest(workspace, cornerStrength, cell.corners);
 }
 
 // The steepest edge point of the direction of which the cell has fewest points.
-int bestEdge(Cell& cell, const std::vector<Candidate>& candidates, const PointSpacing& spacing) {
+int bestEdge(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
   std::array<size_t, kDirections> order = {0, 1, 2, 3};
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t a, size_t b) { return cell.taken_of_direction[a] < cell.taken_of_direction[b]; });
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    const int taken_a = cell.taken_of_direction[a];
+    const int taken_b = cell.taken_of_direction[b];
+    return taken_a < taken_b || (taken_a == taken_b && a < b);
+  });
   for (const size_t direction : order) {
-    const int best = takeBest(cell.edges[direction], candidates, spacing);
+    const int best = takeBest(workspace, edgeStrength, cell.edges[direction]);
     if (best >= 0) return best;
   }
   return -1;
@@ -170,58 +155,73 @@ int bestEdge(Cell& cell, const std::vector<Candidate>& candidates, const PointSp
 // Cells with the fewest points come first, so that a rich region doesn't take all: in round n each cell with n points
 // or fewer gives one, the best candidate of all the cells first. Until `budget` points are taken or nothing is left.
 template <typename BestOfCell, typename Strength>
-void takeRoundByRound(Grid& grid, const std::vector<Candidate>& candidates, int budget, BestOfCell best_of_cell,
-                      Strength strength, PointSpacing& spacing, std::vector<ChosenPoint>& chosen) {
-  struct Offer {
-    Cell* cell;
-    int candidate;
-  };
+void takeRoundByRound(int budget, BestOfCell best_of_cell, Strength strength, const PointChoiceOptions& options,
+                      PointChoiceWorkspace& workspace, std::vector<ChosenPoint>& chosen) {
   const size_t limit = chosen.size() + static_cast<size_t>(std::max(budget, 0));
   int fullest = 0;
-  for (const Cell& cell : grid.cells()) fullest = std::max(fullest, cell.taken);
-  std::vector<Offer> offers;
+  for (const ChoiceCell& cell : workspace.cells) fullest = std::max(fullest, cell.taken);
+  std::vector<CellOffer>& offers = workspace.offers;
   for (int round = 0; chosen.size() < limit; ++round) {
     offers.clear();
-    for (Cell& cell : grid.cells()) {
-      if (cell.taken > round) continue;
-      const int best = best_of_cell(cell, candidates, spacing);
-      if (best >= 0) offers.push_back({&cell, best});
+    for (size_t i = 0; i < workspace.cells.size(); ++i) {
+      if (workspace.cells[i].taken > round) continue;
+      const int best = best_of_cell(workspace, workspace.cells[i]);
+      if (best >= 0) offers.push_back({static_cast<int>(i), best, strength(candidateOf(workspace, best))});
     }
     if (offers.empty() && round >= fullest) return;
-    std::stable_sort(offers.begin(), offers.end(),
-                     [&](const Offer& a, const Offer& b) { return strength(a.candidate) > strength(b.candidate); });
-    for (const Offer& offer : offers) {
-      const ChosenPoint& point = candidates[static_cast<size_t>(offer.candidate)].point;
-      if (chosen.size() >= limit || !spacing.isFree(point.pixel)) continue;
-      spacing.add(point.pixel);
-      chosen.push_back(point);
-      ++offer.cell->taken;
-      ++offer.cell->taken_of_direction[static_cast<size_t>(directionOf(point.normal))];
-      fullest = std::max(fullest, offer.cell->taken);
+    std::sort(offers.begin(), offers.end(), [](const CellOffer& a, const CellOffer& b) {
+      return a.strength > b.strength || (a.strength == b.strength && a.cell < b.cell);
+    });
+    for (const CellOffer& offer : offers) {
+      const PointCandidate& candidate = candidateOf(workspace, offer.candidate);
+      if (chosen.size() >= limit || !workspace.spacing.isFree(candidate.pixel)) continue;
+      workspace.spacing.add(candidate.pixel);
+      chosen.push_back(makePoint(candidate, options));
+      ChoiceCell& cell = workspace.cells[static_cast<size_t>(offer.cell)];
+      ++cell.taken;
+      ++cell.taken_of_direction[directionOf(candidate.normal)];
+      fullest = std::max(fullest, cell.taken);
     }
   }
 }
 
+// Memory for all that an image of this size may ask for.
+void reserve(const cv::Size& size, const EdgeMap& edges, size_t cells, const PointChoiceOptions& options,
+             PointChoiceWorkspace& workspace, std::vector<ChosenPoint>& chosen) {
+  const size_t most_candidates = std::max(mostEdgePoints(size), edges.points.size()) / kCandidateStep + 1;
+  workspace.candidates.reserve(most_candidates);
+  workspace.ranked.reserve(2 * most_candidates);
+  workspace.cells.reserve(cells);
+  workspace.offers.reserve(cells);
+  chosen.reserve(static_cast<size_t>(options.count));
+}
+
 }  // namespace
+
+void choosePoints(const cv::Mat& grey, const EdgeMap& edges, const std::vector<Eigen::Vector2f>& occupied,
+                  const PointChoiceOptions& options, PointChoiceWorkspace& workspace,
+                  std::vector<ChosenPoint>& chosen) {
+  chosen.clear();
+  const int wanted = options.count - static_cast<int>(std::min<size_t>(occupied.size(), static_cast<size_t>(INT_MAX)));
+  if (grey.empty() || edges.points.empty() || wanted <= 0) return;
+  const Grid grid(grey.size(), options.cell);
+  reserve(grey.size(), edges, grid.count(), options, workspace, chosen);
+  workspace.spacing.start(grey.size(), options.spacing, static_cast<size_t>(options.count));
+  for (const Eigen::Vector2f& pixel : occupied) workspace.spacing.add(pixel);
+  workspace.candidates.clear();
+  findPointCandidates(grey, edges, workspace.spacing, options, workspace.candidates);
+  sortIntoCells(grid, occupied, workspace);
+
+  const int corners = std::min(wanted, static_cast<int>(options.corner_share * options.count));
+  takeRoundByRound(corners, bestCorner, cornerStrength, options, workspace, chosen);
+  takeRoundByRound(wanted - static_cast<int>(chosen.size()), bestEdge, edgeStrength, options, workspace, chosen);
+}
 
 std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,
                                       const std::vector<Eigen::Vector2f>& occupied, const PointChoiceOptions& options) {
-  const int wanted = options.count - static_cast<int>(std::min<size_t>(occupied.size(), static_cast<size_t>(INT_MAX)));
-  if (grey.empty() || edges.points.empty() || wanted <= 0) return {};
-  PointSpacing spacing(grey.size(), options.spacing);
-  for (const Eigen::Vector2f& pixel : occupied) spacing.add(pixel);
-  const std::vector<Candidate> candidates = findCandidates(grey, edges, spacing, options);
-  Grid grid = sortIntoCells(grey.size(), candidates, occupied, options.cell);
-
+  PointChoiceWorkspace workspace;
   std::vector<ChosenPoint> chosen;
-  chosen.reserve(static_cast<size_t>(wanted));
-  const int corners = std::min(wanted, static_cast<int>(options.corner_share * options.count));
-  takeRoundByRound(
-      grid, candidates, corners, bestCorner, [&](int i) { return candidates[static_cast<size_t>(i)].point.tensor.l2; },
-      spacing, chosen);
-  takeRoundByRound(
-      grid, candidates, wanted - static_cast<int>(chosen.size()), bestEdge,
-      [&](int i) { return candidates[static_cast<size_t>(i)].gradient; }, spacing, chosen);
+  choosePoints(grey, edges, occupied, options, workspace, chosen);
   return chosen;
 }
 

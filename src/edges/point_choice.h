@@ -3,29 +3,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
 #include "edges/edge_detection.h"
+#include "edges/point_candidates.h"
+#include "edges/point_spacing.h"
 #include "edges/structure_tensor.h"
 
 namespace edgeslam {
-
-struct PointChoiceOptions {
-  int count = 550;             // points tracked at once
-  double spacing = 6;          // least distance between two points [px]
-  int cell = 40;               // grid cell [px]
-  double corner_share = 0.5;   // most of `count` that corner-like points may take first
-  int tensor_window = 15;      // side of the structure tensor's window [px]
-  double corner_ratio = 0.15;  // corner-like: l2 > corner_ratio * l1 ...
-  double corner_strength = 6;  // ... and l2 > corner_strength [grey^2/px^2]
-  double noise = 4;            // of the structure tensor [grey^2/px^2]
-  double sigma_edge = 0.3;     // across an edge [px]
-  double sigma_corner = 0.17;  // of a corner-like point, across its stronger direction [px]
-  double border = 12;          // points keep this distance from the image's border [px]
-  bool weigh_edges =
-      true;  // false: a point counts as if it were known along its edge as well as across; to measure the gain
-};
 
 struct ChosenPoint {
   Eigen::Vector2f pixel;  // sub-pixel [px]
@@ -39,7 +26,42 @@ struct ChosenPoint {
   float sigma_tangent = 0;  // [px]
 };
 
-// At most options.count - occupied.size() new points, none nearer than `spacing` to an occupied pixel or to each other.
+// Candidates of one kind in one cell of the grid: a heap in `ranked`, the best on top.
+struct RankedCandidates {
+  int begin = 0;
+  int end = 0;
+};
+
+struct ChoiceCell {
+  RankedCandidates corners;
+  std::array<RankedCandidates, 4> edges;  // by direction
+  std::array<int, 4> taken_of_direction{};
+  int taken = 0;
+};
+
+// The best candidate of a cell, which it offers for the next round.
+struct CellOffer {
+  int cell;
+  int candidate;
+  float strength;
+};
+
+// Memory of choosePoints, to be used for one image after the other; about 10 bytes a pixel.
+struct PointChoiceWorkspace {
+  PointSpacing spacing;
+  std::vector<PointCandidate> candidates;
+  std::vector<ChoiceCell> cells;
+  std::vector<int> ranked;  // indices of candidates; a corner-like one is there twice
+  std::vector<CellOffer> offers;
+};
+
+// Fills `chosen` with at most options.count - occupied.size() new points, none nearer than `spacing` to an occupied
+// pixel or to each other. Allocates only where `workspace` and `chosen` were not used with these options for an image
+// of this size, or `edges` has more than mostEdgePoints.
+void choosePoints(const cv::Mat& grey, const EdgeMap& edges, const std::vector<Eigen::Vector2f>& occupied,
+                  const PointChoiceOptions& options, PointChoiceWorkspace& workspace, std::vector<ChosenPoint>& chosen);
+
+// The same in memory of its own.
 std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,
                                       const std::vector<Eigen::Vector2f>& occupied, const PointChoiceOptions& options);
 

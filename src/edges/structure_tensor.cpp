@@ -35,43 +35,36 @@ cv::Rect windowInside(const cv::Size& size, const Eigen::Vector2f& pixel, int wi
   return cv::Rect(x - window / 2, y - window / 2, window, window) & cv::Rect(cv::Point(0, 0), size);
 }
 
-StructureTensor tensorOver(const TwiceGradient& gradient, const cv::Rect& window) {
-  if (window.empty()) return {};
-  int64_t xx = 0;
-  int64_t xy = 0;
-  int64_t yy = 0;
-  for (int y = window.y; y < window.y + window.height; ++y) {
-    const int16_t* along_x = gradient.x.ptr<int16_t>(y) + window.x;
-    const int16_t* along_y = gradient.y.ptr<int16_t>(y) + window.x;
-    int row_xx = 0;
-    int row_xy = 0;
-    int row_yy = 0;
-    for (int i = 0; i < window.width; ++i) {
-      row_xx += along_x[i] * along_x[i];
-      row_xy += along_x[i] * along_y[i];
-      row_yy += along_y[i] * along_y[i];
-    }
-    xx += row_xx;
-    xy += row_xy;
-    yy += row_yy;
-  }
-  const double scale = 0.25 / window.area();
-  return decompose(scale * static_cast<double>(xx), scale * static_cast<double>(xy), scale * static_cast<double>(yy));
-}
-
 }  // namespace
 
-StructureTensor structureTensor(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window) {
+GradientProducts gradientProducts(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window) {
   const cv::Rect inside = windowInside(grey.size(), pixel, window);
-  if (inside.empty()) return {};
-  // One pixel more on each side, for the differences.
-  const cv::Rect surroundings = cv::Rect(inside.x - 1, inside.y - 1, inside.width + 2, inside.height + 2) &
-                                cv::Rect(cv::Point(0, 0), grey.size());
-  return tensorOver(twiceGradient(grey(surroundings)), inside - surroundings.tl());
+  GradientProducts products;
+  products.count = inside.area();
+  for (int y = inside.y; y < inside.y + inside.height; ++y) {
+    const auto* row = grey.ptr<uint8_t>(y);
+    const auto* above = grey.ptr<uint8_t>(std::max(y - 1, 0));
+    const auto* below = grey.ptr<uint8_t>(std::min(y + 1, grey.rows - 1));
+    for (int x = inside.x; x < inside.x + inside.width; ++x) {
+      const int along_x = row[std::min(x + 1, grey.cols - 1)] - row[std::max(x - 1, 0)];
+      const int along_y = below[x] - above[x];
+      products.xx += along_x * along_x;
+      products.xy += along_x * along_y;
+      products.yy += along_y * along_y;
+    }
+  }
+  return products;
 }
 
-StructureTensor structureTensor(const TwiceGradient& gradient, const Eigen::Vector2f& pixel, int window) {
-  return tensorOver(gradient, windowInside(gradient.x.size(), pixel, window));
+StructureTensor structureTensor(const GradientProducts& products) {
+  if (products.count == 0) return {};
+  const double scale = 0.25 / products.count;
+  return decompose(scale * static_cast<double>(products.xx), scale * static_cast<double>(products.xy),
+                   scale * static_cast<double>(products.yy));
+}
+
+StructureTensor structureTensor(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window) {
+  return structureTensor(gradientProducts(grey, pixel, window));
 }
 
 }  // namespace edgeslam

@@ -8,22 +8,25 @@ namespace edgeslam {
 namespace {
 
 struct Points {
-  std::vector<EdgePoint> points;
-  std::vector<cv::Point> cells;
+  EdgeWorkspace workspace;
   cv::Mat index = cv::Mat(40, 60, CV_32S, cv::Scalar(-1));
 
   void add(int x, int y, const Eigen::Vector2f& normal) {
+    std::vector<EdgePixel>& points = workspace.pixels.points;
     index.at<int>(y, x) = static_cast<int>(points.size());
-    EdgePoint point;
+    EdgePixel point;
     point.pixel = {static_cast<float>(x), static_cast<float>(y)};
     point.normal = normal;
+    point.cell = {x, y};
     points.push_back(point);
-    cells.emplace_back(x, y);
   }
 };
 
-EdgeMap join(const Points& input, int shortest = 6) {
-  return joinChains(input.points, input.cells, input.index, shortest);
+EdgeMap join(Points input, int shortest = 6) {
+  EdgeMap edges;
+  edges.index = input.index.clone();
+  joinChains(shortest, input.workspace, edges);
+  return edges;
 }
 
 // What holds for every edge map.

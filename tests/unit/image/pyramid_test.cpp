@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace edgeslam {
 namespace {
@@ -80,6 +81,42 @@ TEST(Pyramid, FlatStaysFlatAtOddSizes) {
     cv::minMaxLoc(level, &least, &greatest);
     EXPECT_EQ(least, 93);
     EXPECT_EQ(greatest, 93);
+  }
+}
+
+TEST(Pyramid, LevelsAreThoseOfPyrDown) {
+  for (const cv::Size& size : {cv::Size(640, 480), cv::Size(333, 241), cv::Size(64, 33)}) {
+    cv::Mat expected(size, CV_8U);
+    cv::randu(expected, 0, 256);
+    const ImagePyramid pyramid = buildPyramid(expected, 6);
+    for (const cv::Mat& level : pyramid.levels) {
+      ASSERT_EQ(level.size(), expected.size());
+      EXPECT_EQ(cv::norm(level, expected, cv::NORM_INF), 0);
+      cv::Mat coarser;
+      cv::pyrDown(expected, coarser, cv::Size(), cv::BORDER_REFLECT_101);
+      expected = coarser;
+    }
+  }
+}
+
+TEST(Pyramid, MemoryIsUsedAgainWhateverItHeldBefore) {
+  ImagePyramid pyramid;
+  for (const cv::Size& size : {cv::Size(160, 120), cv::Size(160, 120), cv::Size(90, 150), cv::Size(1, 1)}) {
+    for (const int level_count : {4, 2, 3}) {
+      std::vector<const uint8_t*> before;
+      for (const cv::Mat& level : pyramid.levels) before.push_back(level.data);
+      const bool same_size = !pyramid.levels.empty() && pyramid.levels[0].size() == size;
+      const cv::Mat image = hill(size, 40, 70);
+      buildPyramid(image, level_count, pyramid);
+      const ImagePyramid fresh = buildPyramid(image, level_count);
+      ASSERT_EQ(pyramid.levels.size(), fresh.levels.size());
+      for (size_t i = 0; i < fresh.levels.size(); ++i) {
+        EXPECT_EQ(cv::norm(pyramid.levels[i], fresh.levels[i], cv::NORM_INF), 0);
+        if (same_size && i < before.size()) {
+          EXPECT_EQ(pyramid.levels[i].data, before[i]);
+        }
+      }
+    }
   }
 }
 

@@ -1,0 +1,59 @@
+#include "edges/point_candidates.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr int kNormalReach = 6;  // neighbours on each side over which a normal is averaged [points]
+
+// Mean normal of an edge point and as many neighbours along the chain before as after it, so that a bend does not turn
+// it. A third as noisy as the point's own, and free of the skew that central differences give the tensor on sharp
+// edges.
+Eigen::Vector2f normalAlongChain(const EdgeMap& edges, const EdgePoint& edge) {
+  Eigen::Vector2f sum = edge.normal;
+  int before = edge.previous;
+  int after = edge.next;
+  for (int step = 0; step < kNormalReach && before >= 0 && after >= 0; ++step) {
+    const EdgePoint& behind = edges.points[static_cast<size_t>(before)];
+    const EdgePoint& ahead = edges.points[static_cast<size_t>(after)];
+    sum += behind.normal + ahead.normal;
+    before = behind.previous;
+    after = ahead.next;
+  }
+  const float length = sum.norm();
+  return length > 0 ? Eigen::Vector2f(sum / length) : edge.normal;
+}
+
+PointCandidate makeCandidate(const cv::Mat& grey, const EdgeMap& edges, const EdgePoint& edge,
+                             const PointChoiceOptions& options) {
+  PointCandidate candidate;
+  candidate.pixel = edge.pixel;
+  candidate.chain = edge.chain;
+  candidate.gradient = edge.gradient;
+  candidate.tensor = structureTensor(grey, edge.pixel, options.tensor_window);
+  const StructureTensor& tensor = candidate.tensor;
+  candidate.corner = tensor.l2 > static_cast<float>(options.corner_ratio) * tensor.l1 &&
+                     tensor.l2 > static_cast<float>(options.corner_strength);
+  if (candidate.corner) {
+    candidate.normal = tensor.direction.dot(edge.normal) < 0 ? Eigen::Vector2f(-tensor.direction) : tensor.direction;
+  } else {
+    candidate.normal = normalAlongChain(edges, edge);
+  }
+  return candidate;
+}
+
+}  // namespace
+
+void findPointCandidates(const cv::Mat& grey, const EdgeMap& edges, const PointSpacing& spacing,
+                         const PointChoiceOptions& options, std::vector<PointCandidate>& candidates) {
+  const auto border = static_cast<float>(options.border);
+  const float right = static_cast<float>(grey.cols - 1) - border;
+  const float bottom = static_cast<float>(grey.rows - 1) - border;
+  for (size_t i = 0; i < edges.points.size(); i += kCandidateStep) {
+    const EdgePoint& edge = edges.points[i];
+    const Eigen::Vector2f& pixel = edge.pixel;
+    if (pixel.x() < border || pixel.y() < border || pixel.x() > right || pixel.y() > bottom) continue;
+    if (spacing.isFree(pixel)) candidates.push_back(makeCandidate(grey, edges, edge, options));
+  }
+}
+
+}  // namespace edgeslam

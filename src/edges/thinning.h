@@ -1,0 +1,15 @@
+// P2: edges one pixel wide.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "edges/edge_pixels.h"
+
+namespace edgeslam {
+
+// Of two points next to each other across the same edge, the one nearer to its pixel's centre stays: `index`, as
+// findEdgePixels gave it, no longer names the other.
+void thin(const std::vector<EdgePixel>& points, cv::Mat& index);
+
+}  // namespace edgeslam

@@ -1,0 +1,34 @@
+// P1: an image blurred by a Gaussian, and what a wider Gaussian takes from it. All in integers that are exact up to one
+// rounding a blur, so that edges are the same on every processor.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "image/fixed_gaussian.h"
+
+namespace edgeslam {
+
+// A blurred value of kBlurScale is one grey value; the largest, 255 * kBlurScale, fits a signed 16-bit integer.
+constexpr int kBlurScale = 128;
+
+// Memory to be used for one image after the other.
+struct DifferenceOfGaussians {
+  cv::Mat narrow;  // CV_16U, the image blurred by the narrower Gaussian [grey / kBlurScale]
+  cv::Mat dog;     // CV_16S, that less the image blurred by the wider one [grey / kBlurScale]
+
+  double sigma = 0;  // those of the kernels below
+  double sigma_ratio = 0;
+  FixedGaussian to_narrow;
+  FixedGaussian to_wide;       // from the narrower blur
+  std::vector<uint32_t> sums;  // of one row
+  cv::Mat wide;                // CV_16U
+};
+
+// Of `grey` (CV_8U) with Gaussians of standard deviation `sigma` [px] and `sigma_ratio` >= 1 times that; beyond the
+// image its outermost pixels go on. Allocates where `result` was not used for an image of this size with these
+// Gaussians.
+void differenceOfGaussians(const cv::Mat& grey, double sigma, double sigma_ratio, DifferenceOfGaussians& result);
+
+}  // namespace edgeslam
