@@ -1,5 +1,6 @@
 #include "image/pyramid.h"
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 
@@ -7,6 +8,8 @@
 
 namespace edgeslam {
 namespace {
+
+static_assert(pyramid_border >= halving_border);
 
 // The pixel that lies at `at`, possibly outside of 0 .. count - 1, when the image is mirrored at its outermost pixels.
 int mirrored(int at, int count) {
@@ -32,11 +35,17 @@ void shapeLevel(const cv::Size& size, cv::Mat& level) {
 void mirrorIntoBorder(cv::Mat& level) {
   const int width = level.cols;
   const auto step = static_cast<std::ptrdiff_t>(level.step[0]);
+  std::array<int, pyramid_border> left;  // what the pixel k + 1 to the left of the image mirrors
+  std::array<int, pyramid_border> right;
+  for (int k = 0; k < pyramid_border; ++k) {
+    left[static_cast<size_t>(k)] = mirrored(-k - 1, width);
+    right[static_cast<size_t>(k)] = mirrored(width + k, width);
+  }
   for (int y = 0; y < level.rows; ++y) {
     uint8_t* row = level.ptr<uint8_t>(y);
-    for (int k = 1; k <= pyramid_border; ++k) {
-      row[-k] = row[mirrored(-k, width)];
-      row[width - 1 + k] = row[mirrored(width - 1 + k, width)];
+    for (int k = 0; k < pyramid_border; ++k) {
+      row[-k - 1] = row[left[static_cast<size_t>(k)]];
+      row[width + k] = row[right[static_cast<size_t>(k)]];
     }
   }
   const auto copyRow = [&](int to) {
