@@ -21,14 +21,25 @@ struct DifferenceOfGaussians {
   double sigma = 0;  // those of the kernels below
   double sigma_ratio = 0;
   FixedGaussian to_narrow;
-  FixedGaussian to_wide;       // from the narrower blur
-  std::vector<uint32_t> sums;  // of one row
-  cv::Mat wide;                // CV_16U
+  FixedGaussian to_wide;  // from the narrower blur
+  // Of one row: the pixels above each other around it, and their sums; the vectors' in two parts.
+  std::vector<const uint8_t*> rows;
+  std::vector<int16_t> upper;
+  std::vector<int16_t> lower;
+  std::vector<uint64_t> sums;
 };
 
 // Of `grey` (CV_8U) with Gaussians of standard deviation `sigma` [px] and `sigma_ratio` >= 1 times that; beyond the
 // image its outermost pixels go on. Allocates where `result` was not used for an image of this size with these
 // Gaussians.
 void differenceOfGaussians(const cv::Mat& grey, double sigma, double sigma_ratio, DifferenceOfGaussians& result);
+
+// The same, one pixel after the other.
+void differenceOfGaussiansReference(const cv::Mat& grey, double sigma, double sigma_ratio,
+                                    DifferenceOfGaussians& result);
+
+// Shapes the memory: what both of them do first.
+void prepareDifferenceOfGaussians(const cv::Size& size, double sigma, double sigma_ratio,
+                                  DifferenceOfGaussians& result);
 
 }  // namespace edgeslam

@@ -12,6 +12,12 @@ constexpr int kWeightBits = 16;  // all weights of a kernel, both sides, sum up 
 struct FixedGaussian {
   std::vector<int32_t> weights;
 
+  // For sums of products of 16 bits in pairs: two neighbouring weights in each, the first one in the lower half. What
+  // does not fit 16 bits with its sign, the weight of the centre of a narrow Gaussian, is less by 1 << 16.
+  std::vector<int32_t> pairs_from_centre;  // (0, 1), (2, 3) ... up to the radius
+  std::vector<int32_t> pairs_across;       // (-radius, 1 - radius) ... (radius, nothing)
+  bool centre_is_less = false;
+
   int radius() const { return static_cast<int>(weights.size()) - 1; }  // [px]
 };
 

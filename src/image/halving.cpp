@@ -34,15 +34,15 @@ void sumColumns(const uint8_t* centre, std::ptrdiff_t step, size_t count, uint16
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
     const uint8_t* at = centre + 2 * i;
     // As a 16-bit integer a pair has its first pixel in the lower byte.
-    const auto pair = [&](std::ptrdiff_t row) { return hn::BitCast(d, hn::LoadU(bytes, at + row * step)); };
+    const auto pair = [&](std::ptrdiff_t row) HWY_ATTR { return hn::BitCast(d, hn::LoadU(bytes, at + row * step)); };
     const auto p0 = pair(-2), p1 = pair(-1), p2 = pair(0), p3 = pair(1), p4 = pair(2);
-    const auto weigh = [&](auto v0, auto v1, auto v2, auto v3, auto v4) {
+    const auto weigh = [&](auto v0, auto v1, auto v2, auto v3, auto v4) HWY_ATTR {
       const auto twice_middle = hn::Add(v2, v2);
       const auto inner = hn::Add(hn::Add(v1, v3), v2);
       return hn::Add(hn::Add(hn::Add(v0, v4), twice_middle), hn::ShiftLeft<2>(inner));
     };
-    const auto lower = [&](auto v) { return hn::And(v, low_byte); };
-    const auto upper = [&](auto v) { return hn::ShiftRight<8>(v); };
+    const auto lower = [&](auto v) HWY_ATTR { return hn::And(v, low_byte); };
+    const auto upper = [&](auto v) HWY_ATTR { return hn::ShiftRight<8>(v); };
     hn::StoreU(weigh(lower(p0), lower(p1), lower(p2), lower(p3), lower(p4)), d, first + i);
     hn::StoreU(weigh(upper(p0), upper(p1), upper(p2), upper(p3), upper(p4)), d, second + i);
   }

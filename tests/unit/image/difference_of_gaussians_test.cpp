@@ -6,6 +6,9 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "unit/image/every_target.h"
+#include "unit/image/kernel_images.h"
+
 namespace edgeslam {
 namespace {
 
@@ -84,6 +87,24 @@ TEST(DifferenceOfGaussians, OfEqualWidthsIsZero) {
   DifferenceOfGaussians images;
   differenceOfGaussians(noise({40, 40}), 1.78, 1, images);
   EXPECT_EQ(cv::countNonZero(images.dog), 0);
+}
+
+TEST(DifferenceOfGaussians, HasTheBitsOfTheReferenceOnEveryTarget) {
+  const std::vector<cv::Mat> images = kernelImages(0);
+  onEveryTarget([&] {
+    DifferenceOfGaussians made;
+    DifferenceOfGaussians expected;
+    for (const auto& [sigma, ratio] : {std::make_pair(1.78, 1.26), std::make_pair(0.3, 1.05), std::make_pair(0.01, 1.0),
+                                       std::make_pair(0.9, 1.26), std::make_pair(2.0, 1.6), std::make_pair(6.0, 3.0)}) {
+      for (const cv::Mat& image : images) {
+        if (sigma > 2 && image.total() > 10000) continue;
+        differenceOfGaussians(image, sigma, ratio, made);
+        differenceOfGaussiansReference(image, sigma, ratio, expected);
+        ASSERT_EQ(cv::norm(made.narrow, expected.narrow, cv::NORM_INF), 0) << image.size() << " " << sigma;
+        ASSERT_EQ(cv::norm(made.dog, expected.dog, cv::NORM_INF), 0) << image.size() << " " << sigma;
+      }
+    }
+  });
 }
 
 }  // namespace
