@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+
+#include "image/gradient_products.h"
 
 namespace edgeslam {
 namespace {
@@ -37,34 +38,13 @@ cv::Rect windowInside(const cv::Size& size, const Eigen::Vector2f& pixel, int wi
 
 }  // namespace
 
-GradientProducts gradientProducts(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window) {
-  const cv::Rect inside = windowInside(grey.size(), pixel, window);
-  GradientProducts products;
-  products.count = inside.area();
-  for (int y = inside.y; y < inside.y + inside.height; ++y) {
-    const auto* row = grey.ptr<uint8_t>(y);
-    const auto* above = grey.ptr<uint8_t>(std::max(y - 1, 0));
-    const auto* below = grey.ptr<uint8_t>(std::min(y + 1, grey.rows - 1));
-    for (int x = inside.x; x < inside.x + inside.width; ++x) {
-      const int along_x = row[std::min(x + 1, grey.cols - 1)] - row[std::max(x - 1, 0)];
-      const int along_y = below[x] - above[x];
-      products.xx += along_x * along_x;
-      products.xy += along_x * along_y;
-      products.yy += along_y * along_y;
-    }
-  }
-  return products;
-}
-
-StructureTensor structureTensor(const GradientProducts& products) {
-  if (products.count == 0) return {};
-  const double scale = 0.25 / products.count;
-  return decompose(scale * static_cast<double>(products.xx), scale * static_cast<double>(products.xy),
-                   scale * static_cast<double>(products.yy));
-}
-
 StructureTensor structureTensor(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window) {
-  return structureTensor(gradientProducts(grey, pixel, window));
+  const cv::Rect inside = windowInside(grey.size(), pixel, window);
+  if (inside.empty()) return {};
+  const GradientProducts sums = gradientProducts(grey, inside);
+  const double scale = 0.25 / sums.count;
+  return decompose(scale * static_cast<double>(sums.xx), scale * static_cast<double>(sums.xy),
+                   scale * static_cast<double>(sums.yy));
 }
 
 }  // namespace edgeslam

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <opencv2/core/mat.hpp>
 
 namespace edgeslam {
@@ -14,23 +13,9 @@ struct StructureTensor {
   Eigen::Vector2f direction = Eigen::Vector2f::UnitX();
 };
 
-// Sums over a window of the products of twice the gradient's components, by differences of the neighbours: right minus
-// left, lower minus upper; at the image's border the missing neighbour is the border pixel itself [grey^2/4 px^2].
-struct GradientProducts {
-  int64_t xx = 0;
-  int64_t xy = 0;
-  int64_t yy = 0;
-  int count = 0;  // of pixels
-};
-
-// Over the `window` x `window` pixels (odd) of `grey` (CV_8U) around the one nearest to `pixel`. A window that leaves
-// the image is cut off at the border; of none where nothing is left of it.
-GradientProducts gradientProducts(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window);
-
-// Zero of no pixels.
-StructureTensor structureTensor(const GradientProducts& products);
-
-// Structure tensor at a sub-pixel position of `grey`, over the window of gradientProducts.
+// Structure tensor at a sub-pixel position of `grey` (CV_8U), over the `window` x `window` pixels (odd) around the
+// nearest pixel, with central differences. A window that leaves the image is cut off at the border; zero where nothing
+// is left of it.
 StructureTensor structureTensor(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window);
 
 }  // namespace edgeslam

@@ -41,40 +41,6 @@ TEST(StructureTensor, BothEigenvaluesAreLargeAtACorner) {
   EXPECT_GT(tensor.l2, 100);
 }
 
-TEST(StructureTensor, ProductsAreThoseOfAPlainSum) {
-  const cv::Mat image = withNoise(renderTexture({120, 90}, 4), 20, 1);
-  const auto grey = [&](int x, int y) -> int {
-    return image.at<uint8_t>(std::clamp(y, 0, image.rows - 1), std::clamp(x, 0, image.cols - 1));
-  };
-  for (const int window : {1, 3, 9, 15, 33}) {
-    for (float y = -3; y < 95; y += 7.3F) {
-      for (float x = -3; x < 125; x += 6.7F) {
-        GradientProducts sum;
-        for (int row = 0; row < image.rows; ++row) {
-          for (int column = 0; column < image.cols; ++column) {
-            const bool near =
-                std::abs(row - std::lround(y)) <= window / 2 && std::abs(column - std::lround(x)) <= window / 2;
-            if (!near) continue;
-            const int along_x = grey(column + 1, row) - grey(column - 1, row);
-            const int along_y = grey(column, row + 1) - grey(column, row - 1);
-            sum.xx += along_x * along_x;
-            sum.xy += along_x * along_y;
-            sum.yy += along_y * along_y;
-            ++sum.count;
-          }
-        }
-        const GradientProducts products = gradientProducts(image, {x, y}, window);
-        ASSERT_EQ(products.count, sum.count);
-        ASSERT_EQ(products.xx, sum.xx) << x << " " << y << " " << window;
-        ASSERT_EQ(products.xy, sum.xy);
-        ASSERT_EQ(products.yy, sum.yy);
-        const StructureTensor tensor = structureTensor(image, {x, y}, window);
-        EXPECT_GE(tensor.l1, tensor.l2);
-      }
-    }
-  }
-}
-
 TEST(StructureTensor, IsZeroOffTheImageAndOnFlatGround) {
   const cv::Mat texture = renderTexture({60, 60}, 1);
   for (const Eigen::Vector2f& pixel : {Eigen::Vector2f(-40, 20), Eigen::Vector2f(20, 1e9F),
