@@ -2,106 +2,325 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <cstring>
 
 #include "edges/zero_crossing.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "edges/edge_pixels.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for each instruction set
+#include <hwy/highway.h>
+
+// Row after row: all pixels are tested for a zero crossing (markRow), integers are gathered around those that have one
+// (gather), and from these, many at a time, follow position, normal and whether it is an edge (judge). Compiled without
+// fused multiplications, so that floating point too has the reference's bits.
+
+HWY_BEFORE_NAMESPACE();
 namespace edgeslam {
+namespace HWY_NAMESPACE {
 namespace {
 
-int16_t lesser(int16_t a, int16_t b) { return a < b ? a : b; }
-int16_t greater(int16_t a, int16_t b) { return a > b ? a : b; }
-int16_t difference(int16_t a, int16_t b) { return static_cast<int16_t>(a - b); }
-int16_t magnitude(int16_t a) { return greater(a, static_cast<int16_t>(-a)); }
+#if HWY_TARGET == HWY_SCALAR
 
-// Marks the pixels of row y between `begin` and `end` that may hold an edge: the DoG changes sign towards a 4-neighbour
-// that is hardly nearer to zero, and the gradient is steep enough. 16-bit integers in a plain loop, which the compiler
-// vectorises.
-void markCandidates(const DifferenceOfGaussians& images, int y, int begin, int end, int16_t least_difference,
-                    int16_t* __restrict marks) {
-  const auto* narrow = images.narrow.ptr<int16_t>(y);
-  const auto* narrow_above = images.narrow.ptr<int16_t>(y - 1);
-  const auto* narrow_below = images.narrow.ptr<int16_t>(y + 1);
-  const auto* dog = images.dog.ptr<int16_t>(y);
-  const auto* dog_above = images.dog.ptr<int16_t>(y - 1);
-  const auto* dog_below = images.dog.ptr<int16_t>(y + 1);
-  for (int x = begin; x < end; ++x) {
-    const int16_t along_x = magnitude(difference(narrow[x + 1], narrow[x - 1]));
-    const int16_t along_y = magnitude(difference(narrow_below[x], narrow_above[x]));
-    const int16_t lowest = lesser(lesser(dog[x - 1], dog[x + 1]), lesser(dog_above[x], dog_below[x]));
-    const int16_t highest = greater(greater(dog[x - 1], dog[x + 1]), greater(dog_above[x], dog_below[x]));
-    const auto bar = static_cast<int16_t>((dog[x] >> 2) - dog[x]);
-    const int16_t falls = lowest <= bar ? 1 : 0;
-    const int16_t rises = highest >= bar ? 1 : 0;
-    const int16_t crosses = dog[x] > 0 ? falls : rises;
-    marks[x] = greater(along_x, along_y) >= least_difference ? crosses : int16_t{0};
+bool findByVectors(const DifferenceOfGaussians&, const EdgeOptions&, EdgePixels&, cv::Mat&) { return false; }
+
+#else
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Pixels = hn::ScalableTag<int16_t>;
+using Window = hn::CappedTag<int16_t, 8>;  // a row of the window to which a plane is fitted
+using WindowSums = hn::RepartitionToWide<Window>;
+using Floats = hn::ScalableTag<float>;
+using Integers = hn::RebindToSigned<Floats>;
+using FloatVector = hn::Vec<Floats>;
+using IntegerVector = hn::Vec<Integers>;
+
+constexpr int kLargestWindowRadius = 3;  // that fits a row of the window
+constexpr size_t kSummands = 4;
+
+// Sets the bits of row y, the first one for the pixel `begin`, of those `count` pixels that may hold an edge: the DoG
+// changes sign towards a 4-neighbour that is hardly nearer to zero, and the gradient is steep enough.
+void markRow(const DifferenceOfGaussians& images, int y, int begin, size_t count, int16_t least_difference,
+             uint8_t* HWY_RESTRICT bits) {
+  const Pixels d;
+  const auto* narrow = images.narrow.ptr<int16_t>(y) + begin;
+  const auto* narrow_above = images.narrow.ptr<int16_t>(y - 1) + begin;
+  const auto* narrow_below = images.narrow.ptr<int16_t>(y + 1) + begin;
+  const auto* dog = images.dog.ptr<int16_t>(y) + begin;
+  const auto* dog_above = images.dog.ptr<int16_t>(y - 1) + begin;
+  const auto* dog_below = images.dog.ptr<int16_t>(y + 1) + begin;
+  const auto zero = hn::Zero(d);
+  const auto below_least = hn::Set(d, static_cast<int16_t>(least_difference - 1));
+  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto along_x = hn::Abs(hn::Sub(hn::LoadU(d, narrow + i + 1), hn::LoadU(d, narrow + i - 1)));
+    const auto along_y = hn::Abs(hn::Sub(hn::LoadU(d, narrow_below + i), hn::LoadU(d, narrow_above + i)));
+    const auto here = hn::LoadU(d, dog + i);
+    const auto left = hn::LoadU(d, dog + i - 1);
+    const auto right = hn::LoadU(d, dog + i + 1);
+    const auto above = hn::LoadU(d, dog_above + i);
+    const auto below = hn::LoadU(d, dog_below + i);
+    const auto lowest = hn::Min(hn::Min(left, right), hn::Min(above, below));
+    const auto highest = hn::Max(hn::Max(left, right), hn::Max(above, below));
+    const auto bar = hn::Sub(hn::ShiftRight<2>(here), here);
+    const auto positive = hn::Gt(here, zero);
+    const auto crosses =
+        hn::Or(hn::AndNot(hn::Gt(lowest, bar), positive), hn::Not(hn::Or(positive, hn::Lt(highest, bar))));
+    const auto marked = hn::And(crosses, hn::Gt(hn::Max(along_x, along_y), below_least));
+    hn::StoreMaskBits(d, marked, bits + i / 8);
   }
 }
 
-// The blurred grey values' gradient at a pixel [grey/px].
-Eigen::Vector2f greyGradient(const cv::Mat& narrow, int x, int y) {
-  const auto* row = narrow.ptr<uint16_t>(y);
-  constexpr float kScale = 0.5F / kBlurScale;
-  return {kScale * static_cast<float>(row[x + 1] - row[x - 1]),
-          kScale * static_cast<float>(narrow.ptr<uint16_t>(y + 1)[x] - narrow.ptr<uint16_t>(y - 1)[x])};
+// Lists the marked pixels; returns their number.
+size_t listMarked(const uint8_t* bits, int begin, size_t count, int32_t* HWY_RESTRICT x) {
+  size_t listed = 0;
+  for (size_t first = 0; first < count; first += 64) {
+    uint64_t word = 0;
+    std::memcpy(&word, bits + first / 8, sizeof(word));
+    if (count - first < 64) word &= (uint64_t{1} << (count - first)) - 1;
+    for (; word != 0; word &= word - 1) {
+      x[listed++] = begin + static_cast<int>(first + hwy::Num0BitsBelowLS1Bit_Nonzero64(word));
+    }
+  }
+  return listed;
 }
 
-// Adds the edge point of pixel (x, y), if there is one and room for it.
-void addZeroCrossing(const DifferenceOfGaussians& images, int x, int y, const EdgeOptions& options, size_t most,
-                     std::vector<EdgePixel>& points, cv::Mat& index) {
-  const Eigen::Vector2f gradient = greyGradient(images.narrow, x, y);
-  const auto threshold = static_cast<float>(options.gradient_threshold);
-  const float squared = gradient.squaredNorm();
-  if (squared < threshold * threshold || points.size() == most) return;
-  // The grey gradient gives the normal: the DoG's own is thrice as noisy.
-  const float steepness = std::sqrt(squared);
-  const Eigen::Vector2f normal = gradient / steepness;
-  const bool along_row = std::abs(normal.x()) >= std::abs(normal.y());
-  const float offset = offsetOfZero(images.dog, x, y, along_row);
-  if (std::isnan(offset)) return;
-  if (!isEdgeLike(images.dog, x, y, normal, options.plane_fit_radius, options.sign_balance)) return;
-  EdgePixel point;
-  point.pixel = Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) +
-                offset * (along_row ? normal.x() : normal.y()) * normal;
-  point.normal = normal;
-  point.gradient = steepness;
-  point.offset = offset;
-  point.cell = {x, y};
-  index.at<int>(y, x) = static_cast<int>(points.size());
-  points.push_back(point);
-}
+// The least-squares plane's slopes up to a factor, over the (2 radius + 1)^2 pixels around `centre` of the DoG, and how
+// many of them are positive, each in kSummands parts.
+class PlaneFit {
+ public:
+  explicit PlaneFit(int radius) : radius_(radius) {
+    int16_t weights[8] = {};
+    int16_t inside[8] = {};
+    for (int i = 0; i <= 2 * radius; ++i) {
+      weights[i] = static_cast<int16_t>(i - radius);
+      inside[i] = 1;
+    }
+    std::copy_n(weights, 8, along_x_);
+    std::copy_n(inside, 8, inside_);
+  }
 
-}  // namespace
-
-void findEdgePixels(const DifferenceOfGaussians& images, const EdgeOptions& options, EdgePixels& pixels,
-                    cv::Mat& index) {
-  const cv::Size size = images.dog.size();
-  const size_t most = mostEdgePoints(size);
-  pixels.points.clear();
-  pixels.points.reserve(most);
-  index.create(size, CV_32S);
-  for (int y = 0; y < size.height; ++y) std::fill_n(index.ptr<int>(y), size.width, -1);
-  const int begin = options.plane_fit_radius + 2;
-  const int end = size.width - begin;
-  if (begin >= end) return;
-  // The larger component of a gradient is at least its length over sqrt 2.
-  const auto least_difference =
-      static_cast<int16_t>(std::clamp(2.0 * kBlurScale * options.gradient_threshold * 0.7, 1.0, 32767.0));
-  constexpr int kMarksPerWord = sizeof(uint64_t) / sizeof(int16_t);
-  std::vector<int16_t>& marks = pixels.marks;
-  marks.resize(static_cast<size_t>(size.width + kMarksPerWord));
-  for (int y = begin; y < size.height - begin; ++y) {
-    markCandidates(images, y, begin, end, least_difference, marks.data());
-    for (int x = begin; x < end; x += kMarksPerWord) {
-      uint64_t any = 0;
-      std::memcpy(&any, &marks[static_cast<size_t>(x)], sizeof(any));
-      if (any == 0) continue;
-      for (int i = x; i < std::min(x + kMarksPerWord, end); ++i) {
-        if (marks[static_cast<size_t>(i)]) addZeroCrossing(images, i, y, options, most, pixels.points, index);
+  void fit(const int16_t* centre, std::ptrdiff_t step, int32_t* HWY_RESTRICT slope_x, int32_t* HWY_RESTRICT slope_y,
+           int32_t* HWY_RESTRICT positive) const {
+    const Window d;
+    const WindowSums wide;
+    const size_t lanes = hn::Lanes(d);
+    const auto zero = hn::Zero(d);
+    auto x0 = hn::Zero(wide), x1 = hn::Zero(wide), y0 = hn::Zero(wide), y1 = hn::Zero(wide), p0 = hn::Zero(wide),
+         p1 = hn::Zero(wide);
+    for (size_t i = 0; i < 8; i += lanes) {
+      const auto weights = hn::LoadU(d, along_x_ + i);
+      const auto inside = hn::LoadU(d, inside_ + i);
+      const int16_t* at = centre - radius_ * step - radius_ + i;
+      auto count = zero;
+      auto row_weights = hn::Mul(inside, hn::Set(d, static_cast<int16_t>(-radius_)));
+      for (int row = -radius_; row <= radius_; ++row, at += step) {
+        const auto values = hn::LoadU(d, at);
+        x0 = hn::ReorderWidenMulAccumulate(wide, values, weights, x0, x1);
+        y0 = hn::ReorderWidenMulAccumulate(wide, values, row_weights, y0, y1);
+        row_weights = hn::Add(row_weights, inside);
+        count = hn::Sub(count, hn::VecFromMask(d, hn::Gt(values, zero)));  // a true mask is -1
       }
+      p0 = hn::ReorderWidenMulAccumulate(wide, count, inside, p0, p1);
+    }
+    hn::StoreU(hn::Add(x0, x1), wide, slope_x);
+    hn::StoreU(hn::Add(y0, y1), wide, slope_y);
+    hn::StoreU(hn::Add(p0, p1), wide, positive);
+  }
+
+ private:
+  int radius_;
+  int16_t along_x_[8];
+  int16_t inside_[8];
+};
+
+// Fills in what lies around the first `count` candidates of row y.
+void gather(const DifferenceOfGaussians& images, int y, size_t count, const PlaneFit& plane,
+            EdgeCandidates& candidates) {
+  const auto* narrow = images.narrow.ptr<int16_t>(y);
+  const auto* dog = images.dog.ptr<int16_t>(y);
+  const auto narrow_step = static_cast<std::ptrdiff_t>(images.narrow.step1());
+  const auto dog_step = static_cast<std::ptrdiff_t>(images.dog.step1());
+  for (size_t i = 0; i < count; ++i) {
+    const int32_t x = candidates.x[i];
+    const int32_t gradient_x = narrow[x + 1] - narrow[x - 1];
+    const int32_t gradient_y = narrow[x + narrow_step] - narrow[x - narrow_step];
+    const bool along_row = std::abs(gradient_x) >= std::abs(gradient_y);
+    const std::ptrdiff_t across = along_row ? 1 : dog_step;
+    const std::ptrdiff_t along = along_row ? dog_step : 1;
+    const auto smoothed = [&](const int16_t* at) { return at[-along] + 2 * at[0] + at[along]; };
+    candidates.gradient_x[i] = gradient_x;
+    candidates.gradient_y[i] = gradient_y;
+    candidates.before[i] = smoothed(dog + x - across);
+    candidates.here[i] = smoothed(dog + x);
+    candidates.after[i] = smoothed(dog + x + across);
+    plane.fit(dog + x, dog_step, &candidates.slope_x[kSummands * i], &candidates.slope_y[kSummands * i],
+              &candidates.positive[kSummands * i]);
+  }
+}
+
+IntegerVector sumOfSummands(const std::vector<int32_t>& summands, size_t i) {
+  IntegerVector a, b, c, d;
+  hn::LoadInterleaved4(Integers(), &summands[kSummands * i], a, b, c, d);
+  return hn::Add(hn::Add(a, b), hn::Add(c, d));
+}
+
+struct Thresholds {
+  float squared_gradient;
+  int32_t imbalance;  // most |2 positive - all|
+  int32_t window;     // pixels
+};
+
+// What a vector of candidates is worth, and which of them are edges.
+struct Judged {
+  FloatVector pixel_x;
+  FloatVector pixel_y;
+  FloatVector normal_x;
+  FloatVector normal_y;
+  FloatVector gradient;
+  FloatVector offset;
+  hn::Mask<Floats> is_edge;
+};
+
+Judged judge(const EdgeCandidates& candidates, size_t i, float y, const Thresholds& thresholds) {
+  const Floats d;
+  const Integers di;
+  const auto load = [&](const std::vector<int32_t>& values) HWY_ATTR { return hn::LoadU(di, &values[i]); };
+  const auto zero = hn::Zero(di);
+  Judged judged;
+
+  const IntegerVector gradient_x = load(candidates.gradient_x);
+  const IntegerVector gradient_y = load(candidates.gradient_y);
+  const FloatVector scale = hn::Set(d, 0.5F / kBlurScale);
+  const FloatVector x_component = hn::Mul(scale, hn::ConvertTo(d, gradient_x));
+  const FloatVector y_component = hn::Mul(scale, hn::ConvertTo(d, gradient_y));
+  const FloatVector squared = hn::Add(hn::Mul(x_component, x_component), hn::Mul(y_component, y_component));
+  judged.gradient = hn::Sqrt(squared);
+  judged.normal_x = hn::Div(x_component, judged.gradient);
+  judged.normal_y = hn::Div(y_component, judged.gradient);
+
+  // As offsetOfZero does: between this pixel and the one after it, or before it, whichever is not nearer to zero.
+  const IntegerVector here = load(candidates.here);
+  const IntegerVector before = load(candidates.before);
+  const IntegerVector after = load(candidates.after);
+  const auto sign_differs = [&](IntegerVector other) HWY_ATTR {
+    return hn::Xor(hn::VecFromMask(di, hn::Gt(here, zero)), hn::VecFromMask(di, hn::Gt(other, zero)));
+  };
+  const auto crosses_after = hn::AndNot(hn::Gt(hn::Abs(here), hn::Abs(after)), hn::MaskFromVec(sign_differs(after)));
+  const auto crosses_before = hn::And(hn::MaskFromVec(sign_differs(before)), hn::Lt(hn::Abs(here), hn::Abs(before)));
+  const IntegerVector fall = hn::IfThenElse(crosses_after, hn::Sub(here, after), hn::Sub(before, here));
+  judged.offset = hn::Div(hn::ConvertTo(d, here), hn::ConvertTo(d, fall));
+
+  // As isEdgeLike does.
+  const FloatVector slope_x = hn::ConvertTo(d, sumOfSummands(candidates.slope_x, i));
+  const FloatVector slope_y = hn::ConvertTo(d, sumOfSummands(candidates.slope_y, i));
+  const IntegerVector positive = sumOfSummands(candidates.positive, i);
+  const IntegerVector imbalance = hn::Abs(hn::Sub(hn::Add(positive, positive), hn::Set(di, thresholds.window)));
+  const FloatVector rise = hn::Add(hn::Mul(slope_x, judged.normal_x), hn::Mul(slope_y, judged.normal_y));
+  const FloatVector squared_slope = hn::Add(hn::Mul(slope_x, slope_x), hn::Mul(slope_y, slope_y));
+  const FloatVector least_squared_rise =
+      hn::Mul(hn::Set(d, kLeastSlopeAgreement * kLeastSlopeAgreement), squared_slope);
+  const auto rises = hn::And(hn::Gt(rise, hn::Zero(d)), hn::Ge(hn::Mul(rise, rise), least_squared_rise));
+
+  const auto along_row = hn::RebindMask(d, hn::Not(hn::Lt(hn::Abs(gradient_x), hn::Abs(gradient_y))));
+  const FloatVector way = hn::Mul(judged.offset, hn::IfThenElse(along_row, judged.normal_x, judged.normal_y));
+  judged.pixel_x = hn::Add(hn::ConvertTo(d, load(candidates.x)), hn::Mul(way, judged.normal_x));
+  judged.pixel_y = hn::Add(hn::Set(d, y), hn::Mul(way, judged.normal_y));
+
+  const auto crosses = hn::Or(crosses_after, crosses_before);
+  const auto balanced = hn::Lt(imbalance, hn::Set(di, thresholds.imbalance + 1));
+  const auto steep = hn::Ge(squared, hn::Set(d, thresholds.squared_gradient));
+  judged.is_edge = hn::And(hn::And(steep, rises), hn::RebindMask(d, hn::And(crosses, balanced)));
+  return judged;
+}
+
+// Adds those of the first `count` candidates of row y that are edges, and that there is room for.
+void addEdges(size_t count, int y, const Thresholds& thresholds, size_t most, EdgePixels& pixels,
+              int32_t* HWY_RESTRICT index) {
+  constexpr size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
+  HWY_ALIGN float pixel_x[kMostLanes], pixel_y[kMostLanes], normal_x[kMostLanes], normal_y[kMostLanes],
+      gradient[kMostLanes], offset[kMostLanes];
+  uint8_t bits[sizeof(uint64_t)] = {};
+  const Floats d;
+  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const Judged judged = judge(pixels.candidates, i, static_cast<float>(y), thresholds);
+    hn::StoreMaskBits(d, judged.is_edge, bits);
+    hn::Store(judged.pixel_x, d, pixel_x);
+    hn::Store(judged.pixel_y, d, pixel_y);
+    hn::Store(judged.normal_x, d, normal_x);
+    hn::Store(judged.normal_y, d, normal_y);
+    hn::Store(judged.gradient, d, gradient);
+    hn::Store(judged.offset, d, offset);
+    uint64_t word = 0;
+    std::memcpy(&word, bits, sizeof(word));
+    if (count - i < 64) word &= (uint64_t{1} << (count - i)) - 1;
+    for (; word != 0 && pixels.points.size() < most; word &= word - 1) {
+      const size_t k = hwy::Num0BitsBelowLS1Bit_Nonzero64(word);
+      const int32_t x = pixels.candidates.x[i + k];
+      index[x] = static_cast<int32_t>(pixels.points.size());
+      pixels.points.push_back(
+          {{pixel_x[k], pixel_y[k]}, {normal_x[k], normal_y[k]}, gradient[k], offset[k], cv::Point(x, y)});
     }
   }
 }
 
+void prepareCandidates(size_t width, EdgeCandidates& candidates) {
+  constexpr size_t kSlack = HWY_MAX_BYTES;
+  candidates.marks.resize(width / 8 + kSlack);
+  for (auto* values : {&candidates.x, &candidates.gradient_x, &candidates.gradient_y, &candidates.before,
+                       &candidates.here, &candidates.after}) {
+    values->resize(width + kSlack);
+  }
+  for (auto* summands : {&candidates.slope_x, &candidates.slope_y, &candidates.positive}) {
+    summands->resize(kSummands * (width + kSlack));
+  }
+}
+
+// False where the image or the window is not of a size that vectors are made for.
+bool findByVectors(const DifferenceOfGaussians& images, const EdgeOptions& options, EdgePixels& pixels,
+                   cv::Mat& index) {
+  const cv::Size size = images.dog.size();
+  const int radius = options.plane_fit_radius;
+  if (radius > kLargestWindowRadius || static_cast<size_t>(size.width) < hn::Lanes(Pixels())) return false;
+  prepareEdgePixels(size, pixels, index);
+  prepareCandidates(static_cast<size_t>(size.width), pixels.candidates);
+  const int margin = edgeMargin(options);
+  if (size.width <= 2 * margin) return true;
+  const auto count = static_cast<size_t>(size.width - 2 * margin);
+  const auto threshold = static_cast<float>(options.gradient_threshold);
+  const int window = (2 * radius + 1) * (2 * radius + 1);
+  const Thresholds thresholds = {threshold * threshold,
+                                 static_cast<int32_t>(std::floor(std::clamp(options.sign_balance, -1.0, 1.0) * window)),
+                                 window};
+  const PlaneFit plane(radius);
+  for (int y = margin; y < size.height - margin; ++y) {
+    markRow(images, y, margin, count, leastDifference(options), pixels.candidates.marks.data());
+    const size_t listed = listMarked(pixels.candidates.marks.data(), margin, count, pixels.candidates.x.data());
+    gather(images, y, listed, plane, pixels.candidates);
+    addEdges(listed, y, thresholds, mostEdgePoints(size), pixels, index.ptr<int32_t>(y));
+  }
+  return true;
+}
+
+#endif
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
 }  // namespace edgeslam
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace edgeslam {
+
+HWY_EXPORT(findByVectors);
+
+void findEdgePixels(const DifferenceOfGaussians& images, const EdgeOptions& options, EdgePixels& pixels,
+                    cv::Mat& index) {
+  if (!HWY_DYNAMIC_DISPATCH(findByVectors)(images, options, pixels, index)) {
+    findEdgePixelsReference(images, options, pixels, index);
+  }
+}
+
+}  // namespace edgeslam
+#endif

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -27,9 +28,23 @@ struct EdgePixel {
   cv::Point cell;          // the pixel that it lies in
 };
 
+// Of one row of the image: the pixels that may hold an edge, and integers of the images around each.
+struct EdgeCandidates {
+  std::vector<uint8_t> marks;       // a bit a pixel
+  std::vector<int32_t> x;           // [px]
+  std::vector<int32_t> gradient_x;  // twice that of the blurred image
+  std::vector<int32_t> gradient_y;
+  std::vector<int32_t> before;  // the DoG, smoothed along the edge, a pixel before, in, and a pixel after this one
+  std::vector<int32_t> here;
+  std::vector<int32_t> after;
+  std::vector<int32_t> slope_x;  // of the plane fitted to the DoG, in four summands
+  std::vector<int32_t> slope_y;
+  std::vector<int32_t> positive;  // pixels of the window where the DoG is, in four summands
+};
+
 struct EdgePixels {
   std::vector<EdgePixel> points;  // row by row
-  std::vector<int16_t> marks;     // of one row: not 0 where an edge may be
+  EdgeCandidates candidates;
 };
 
 // No more points are looked for in an image of this size: a quarter of its pixels. Noise of whatever grain gives a
@@ -40,5 +55,18 @@ inline size_t mostEdgePoints(const cv::Size& size) { return static_cast<size_t>(
 // more than mostEdgePoints the lowest rows are left out. Allocates where `pixels` was not used for this size.
 void findEdgePixels(const DifferenceOfGaussians& images, const EdgeOptions& options, EdgePixels& pixels,
                     cv::Mat& index);
+
+// The same, one pixel after the other.
+void findEdgePixelsReference(const DifferenceOfGaussians& images, const EdgeOptions& options, EdgePixels& pixels,
+                             cv::Mat& index);
+
+// Shapes the memory and empties it: what both of them do first.
+void prepareEdgePixels(const cv::Size& size, EdgePixels& pixels, cv::Mat& index);
+
+// Edges are looked for in pixels that lie so far inside the image [px].
+inline int edgeMargin(const EdgeOptions& options) { return options.plane_fit_radius + 2; }
+
+// What the larger component of twice the blurred image's gradient is at least, where the gradient is steep enough.
+int16_t leastDifference(const EdgeOptions& options);
 
 }  // namespace edgeslam

@@ -9,8 +9,6 @@
 namespace edgeslam {
 namespace {
 
-constexpr float kLeastAgreement = 0.7F;  // cosine between the plane's gradient and the normal
-
 // The window's columns, summed; and its rows.
 template <int radius>
 struct WindowSums {
@@ -47,7 +45,7 @@ bool isEdgeLikeWithin(const cv::Mat& dog, int x, int y, const Eigen::Vector2f& n
   if (std::abs(2 * sums.positive - kCount) > sign_balance * kCount) return false;
   const Eigen::Vector2f slope(slopeOf<radius>(sums.columns), slopeOf<radius>(sums.rows));
   const float rise = slope.dot(normal);
-  return rise > 0 && rise * rise >= kLeastAgreement * kLeastAgreement * slope.squaredNorm();
+  return rise > 0 && rise * rise >= kLeastSlopeAgreement * kLeastSlopeAgreement * slope.squaredNorm();
 }
 
 }  // namespace
