@@ -1,0 +1,178 @@
+#include "edges/edge_neighbours.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "edges/edge_neighbours.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for each instruction set
+#include <hwy/highway.h>
+
+// For a batch of points the pixels ahead and behind are looked up one after the other (lookUp); which of them is the
+// best continuation is then found for many points at a time (choose). Of three pixels it could hardly be foretold which
+// hold a point, so neither branches on it.
+
+HWY_BEFORE_NAMESPACE();
+namespace edgeslam {
+namespace HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET == HWY_SCALAR
+
+void chooseByVectors(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
+                     std::vector<int>& behind) {
+  chooseNeighboursReference(points, index, ahead, behind);
+}
+
+#else
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::ScalableTag<float>;
+using Integers = hn::RebindToSigned<Floats>;
+using FloatVector = hn::Vec<Floats>;
+
+constexpr size_t kBatch = 64;  // points
+constexpr size_t kTurns = 3;   // straight on, to the right, to the left
+constexpr size_t kPlace = 4;   // floats of a point: where it is and its normal, as in EdgePixel
+constexpr size_t kSlack = 64;  // lanes of the longest vectors
+
+struct Batch {
+  HWY_ALIGN float own[kPlace * (kBatch + kSlack)];
+  HWY_ALIGN int32_t octants[kBatch + kSlack];                     // in which each edge leads ahead
+  HWY_ALIGN float others[2][kTurns][kPlace * (kBatch + kSlack)];  // ahead, behind
+  HWY_ALIGN int32_t candidates[2][kTurns][kBatch + kSlack];
+};
+
+// As octant() does.
+void findOctants(size_t count, Batch& batch) {
+  const Floats d;
+  const Integers di;
+  const auto tan_of_eighth = hn::Set(d, kTanOfEighth);
+  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    FloatVector x, y, normal_x, normal_y;
+    hn::LoadInterleaved4(d, &batch.own[kPlace * i], x, y, normal_x, normal_y);
+    const auto along_x = hn::Neg(normal_y);
+    const auto along_y = normal_x;
+    const auto is_level = hn::Not(hn::Gt(hn::Abs(along_y), hn::Mul(tan_of_eighth, hn::Abs(along_x))));
+    const auto is_upright = hn::Not(hn::Gt(hn::Abs(along_x), hn::Mul(tan_of_eighth, hn::Abs(along_y))));
+    const auto right = hn::RebindMask(di, hn::Gt(along_x, hn::Zero(d)));
+    const auto down = hn::RebindMask(di, hn::Gt(along_y, hn::Zero(d)));
+    const auto level = hn::IfThenElse(right, hn::Zero(di), hn::Set(di, 4));
+    const auto upright = hn::IfThenElse(down, hn::Set(di, 2), hn::Set(di, 6));
+    const auto slanting = hn::IfThenElse(right, hn::IfThenElse(down, hn::Set(di, 1), hn::Set(di, 7)),
+                                         hn::IfThenElse(down, hn::Set(di, 3), hn::Set(di, 5)));
+    const auto upright_or_slanting = hn::IfThenElse(hn::RebindMask(di, is_upright), upright, slanting);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(di, is_level), level, upright_or_slanting), di, &batch.octants[i]);
+  }
+}
+
+void lookUp(const std::vector<EdgePixel>& points, const cv::Mat& index, size_t first, size_t count, Batch& batch) {
+  static_assert(offsetof(EdgePixel, pixel) == 0 && offsetof(EdgePixel, normal) == 2 * sizeof(float));
+  constexpr std::array<size_t, kTurns> kTurn = {0, 1, 7};
+  constexpr size_t kBytes = kPlace * sizeof(float);
+  std::array<std::ptrdiff_t, 19> steps;  // around twice and more, so that a turn needs no bounds
+  for (size_t i = 0; i < steps.size(); ++i) steps[i] = stepTo(static_cast<int>(i % 8), index);
+  for (size_t i = 0; i < count; ++i) std::memcpy(&batch.own[kPlace * i], &points[first + i], kBytes);
+  findOctants(count, batch);
+  const auto* entries = index.ptr<int32_t>(0);
+  const auto row_step = static_cast<std::ptrdiff_t>(index.step1());
+  for (size_t i = 0; i < count; ++i) {
+    const cv::Point& cell = points[first + i].cell;
+    const int32_t* entry = entries + cell.y * row_step + cell.x;
+    const std::ptrdiff_t* straight = &steps[static_cast<size_t>(batch.octants[i])];
+    for (size_t side = 0; side < 2; ++side) {
+      for (size_t turn = 0; turn < kTurns; ++turn) {
+        const int32_t candidate = entry[straight[4 * side + kTurn[turn]]];
+        const int32_t readable = candidate & ~(candidate >> 31);  // the first point in place of -1
+        batch.candidates[side][turn][i] = candidate;
+        std::memcpy(&batch.others[side][turn][kPlace * i], &points[static_cast<size_t>(readable)], kBytes);
+      }
+    }
+  }
+}
+
+// Of a vector of points from i on: the best on one side, where `direction` leads.
+hn::Vec<Integers> chooseSide(const Batch& batch, size_t side, size_t i, FloatVector pixel_x, FloatVector pixel_y,
+                             FloatVector normal_x, FloatVector normal_y, FloatVector direction_x,
+                             FloatVector direction_y) {
+  const Floats d;
+  const Integers di;
+  auto best = hn::Set(di, -1);
+  auto least_cost = hn::Set(d, std::numeric_limits<float>::max());
+  for (size_t turn = 0; turn < kTurns; ++turn) {
+    FloatVector other_x, other_y, other_normal_x, other_normal_y;
+    hn::LoadInterleaved4(d, &batch.others[side][turn][kPlace * i], other_x, other_y, other_normal_x, other_normal_y);
+    const auto dot = [](FloatVector ax, FloatVector ay, FloatVector bx, FloatVector by)
+                         HWY_ATTR { return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)); };
+    const auto difference_x = hn::Sub(other_x, pixel_x);
+    const auto difference_y = hn::Sub(other_y, pixel_y);
+    const auto agreement = dot(normal_x, normal_y, other_normal_x, other_normal_y);
+    const auto way = dot(difference_x, difference_y, direction_x, direction_y);
+    const auto off_here = dot(difference_x, difference_y, normal_x, normal_y);
+    const auto off_there = dot(difference_x, difference_y, other_normal_x, other_normal_y);
+    const auto off = hn::Add(hn::Mul(off_here, off_here), hn::Mul(off_there, off_there));
+    const auto cost =
+        hn::Add(dot(difference_x, difference_y, difference_x, difference_y), hn::Mul(hn::Set(d, 4.0F), off));
+    const auto candidate = hn::LoadU(di, &batch.candidates[side][turn][i]);
+    const auto is_there = hn::RebindMask(d, hn::Gt(candidate, hn::Set(di, -1)));
+    const auto agrees = hn::And(is_there, hn::Ge(agreement, hn::Set(d, kLeastNeighbourAgreement)));
+    const auto allowed = hn::And(agrees, hn::Gt(way, hn::Zero(d)));
+    const auto better = hn::And(allowed, hn::Lt(cost, least_cost));
+    least_cost = hn::IfThenElse(better, cost, least_cost);
+    best = hn::IfThenElse(hn::RebindMask(di, better), candidate, best);
+  }
+  return best;
+}
+
+void chooseByVectors(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
+                     std::vector<int>& behind) {
+  const Floats d;
+  const Integers di;
+  Batch batch;
+  HWY_ALIGN int32_t best_ahead[kBatch + kSlack];
+  HWY_ALIGN int32_t best_behind[kBatch + kSlack];
+  std::memset(&batch, 0, sizeof(batch));
+  for (size_t first = 0; first < points.size(); first += kBatch) {
+    const size_t count = std::min(kBatch, points.size() - first);
+    lookUp(points, index, first, count, batch);
+    for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+      FloatVector x, y, normal_x, normal_y;
+      hn::LoadInterleaved4(d, &batch.own[kPlace * i], x, y, normal_x, normal_y);
+      const auto opposite_x = hn::Neg(normal_x);
+      const auto opposite_y = hn::Neg(normal_y);
+      // Along `ahead` the edge runs a quarter turn from its normal.
+      hn::StoreU(chooseSide(batch, 0, i, x, y, normal_x, normal_y, opposite_y, normal_x), di, best_ahead + i);
+      hn::StoreU(chooseSide(batch, 1, i, x, y, normal_x, normal_y, normal_y, opposite_x), di, best_behind + i);
+    }
+    for (size_t i = 0; i < count; ++i) {
+      const EdgePixel& point = points[first + i];
+      const bool is_named = index.ptr<int32_t>(point.cell.y)[point.cell.x] == static_cast<int32_t>(first + i);
+      ahead[first + i] = is_named ? best_ahead[i] : -1;
+      behind[first + i] = is_named ? best_behind[i] : -1;
+    }
+  }
+}
+
+#endif
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace edgeslam
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace edgeslam {
+
+HWY_EXPORT(chooseByVectors);
+
+void chooseNeighbours(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
+                      std::vector<int>& behind) {
+  HWY_DYNAMIC_DISPATCH(chooseByVectors)(points, index, ahead, behind);
+}
+
+}  // namespace edgeslam
+#endif
