@@ -29,12 +29,14 @@ PointCandidate makeCandidate(const cv::Mat& grey, const EdgeMap& edges, const Ed
   candidate.pixel = edge.pixel;
   candidate.chain = edge.chain;
   candidate.gradient = edge.gradient;
-  candidate.tensor = structureTensor(grey, edge.pixel, options.tensor_window);
-  const StructureTensor& tensor = candidate.tensor;
-  candidate.corner = tensor.l2 > static_cast<float>(options.corner_ratio) * tensor.l1 &&
-                     tensor.l2 > static_cast<float>(options.corner_strength);
+  candidate.products = gradientProductsAround(grey, edge.pixel, options.tensor_window);
+  const Eigenvalues values = eigenvalues(candidate.products);
+  candidate.l2 = values.l2;
+  candidate.corner = values.l2 > static_cast<float>(options.corner_ratio) * values.l1 &&
+                     values.l2 > static_cast<float>(options.corner_strength);
   if (candidate.corner) {
-    candidate.normal = tensor.direction.dot(edge.normal) < 0 ? Eigen::Vector2f(-tensor.direction) : tensor.direction;
+    const Eigen::Vector2f direction = structureTensor(candidate.products).direction;
+    candidate.normal = direction.dot(edge.normal) < 0 ? Eigen::Vector2f(-direction) : direction;
   } else {
     candidate.normal = normalAlongChain(edges, edge);
   }

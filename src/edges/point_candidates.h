@@ -35,9 +35,10 @@ struct PointCandidate {
   // Unit, from dark to bright: of a corner-like point the stronger direction of its structure tensor, of the others the
   // mean normal of the edge around it.
   Eigen::Vector2f normal;
-  StructureTensor tensor;
-  float gradient = 0;  // of the edge point [grey/px]
-  int chain = -1;      // of the edge point
+  GradientProducts products;  // over its structure tensor's window
+  float l2 = 0;               // of the structure tensor [grey^2/px^2]
+  float gradient = 0;         // of the edge point [grey/px]
+  int chain = -1;             // of the edge point
   bool corner = false;
 };
 

@@ -12,16 +12,19 @@ constexpr size_t kDirections = 4;      // of an edge that are told apart, over h
 constexpr float kLeastL2 = 1e-6F;      // [grey^2/px^2]
 constexpr float kUnknownAlong = 1000;  // standard deviation of a point that nothing holds along its edge [px]
 
+// Of the line that the normal lies on: 0 is level, 1 slants from the upper left to the lower right, 2 is upright.
 size_t directionOf(const Eigen::Vector2f& normal) {
-  const float half_turns = std::atan2(normal.y(), normal.x()) / static_cast<float>(M_PI) + 1;
-  return static_cast<size_t>(std::lround(half_turns * static_cast<float>(kDirections))) % kDirections;
+  constexpr float kTanOfEighth = 0.41421356F;
+  if (std::abs(normal.y()) < kTanOfEighth * std::abs(normal.x())) return 0;
+  if (std::abs(normal.x()) < kTanOfEighth * std::abs(normal.y())) return 2;
+  return (normal.x() > 0) == (normal.y() > 0) ? 1 : 3;
 }
 
 ChosenPoint makePoint(const PointCandidate& candidate, const PointChoiceOptions& options) {
   ChosenPoint point;
   point.pixel = candidate.pixel;
   point.normal = candidate.normal;
-  point.tensor = candidate.tensor;
+  point.tensor = structureTensor(candidate.products);
   point.corner = candidate.corner;
   point.chain = candidate.chain;
   point.sigma_normal = static_cast<float>(point.corner ? options.sigma_corner : options.sigma_edge);
@@ -60,19 +63,12 @@ const PointCandidate& candidateOf(const PointChoiceWorkspace& workspace, int ind
   return workspace.candidates[static_cast<size_t>(index)];
 }
 
-// By what corner-like points are ranked, and by what the others are.
-float cornerStrength(const PointCandidate& candidate) { return candidate.tensor.l2; }
-float edgeStrength(const PointCandidate& candidate) { return candidate.gradient; }
-
 // The order within a heap: of equally strong candidates the later one is the better.
-template <typename Strength>
-auto weaker(const PointChoiceWorkspace& workspace, Strength strength) {
-  return [&workspace, strength](int a, int b) {
-    const float strength_a = strength(candidateOf(workspace, a));
-    const float strength_b = strength(candidateOf(workspace, b));
-    return strength_a < strength_b || (strength_a == strength_b && a < b);
-  };
-}
+struct Weaker {
+  bool operator()(const RankedCandidate& a, const RankedCandidate& b) const {
+    return a.strength < b.strength || (a.strength == b.strength && a.candidate < b.candidate);
+  }
+};
 
 RankedCandidates& edgesOf(ChoiceCell& cell, const PointCandidate& candidate) {
   return cell.edges[directionOf(candidate.normal)];
@@ -104,41 +100,45 @@ void sortIntoCells(const Grid& grid, const std::vector<Eigen::Vector2f>& occupie
     if (candidate.corner) ++cell.corners.end;
     ++edgesOf(cell, candidate).end;
   }
-  std::vector<int>& ranked = workspace.ranked;
+  std::vector<RankedCandidate>& ranked = workspace.ranked;
   ranked.resize(static_cast<size_t>(layOut(cells)));
+  const auto append = [&](RankedCandidates& list, float strength, size_t candidate) {
+    ranked[static_cast<size_t>(list.end++)] = {strength, static_cast<int>(candidate)};
+  };
   for (size_t i = 0; i < workspace.candidates.size(); ++i) {
     const PointCandidate& candidate = workspace.candidates[i];
     ChoiceCell& cell = cells[grid.indexOf(candidate.pixel)];
-    if (candidate.corner) ranked[static_cast<size_t>(cell.corners.end++)] = static_cast<int>(i);
-    ranked[static_cast<size_t>(edgesOf(cell, candidate).end++)] = static_cast<int>(i);
+    if (candidate.corner) append(cell.corners, candidate.l2, i);
+    append(edgesOf(cell, candidate), candidate.gradient, i);
   }
+  const auto rank = [&](const RankedCandidates& list) {
+    std::make_heap(ranked.begin() + list.begin, ranked.begin() + list.end, Weaker());
+  };
   for (const ChoiceCell& cell : cells) {
-    std::make_heap(ranked.begin() + cell.corners.begin, ranked.begin() + cell.corners.end,
-                   weaker(workspace, cornerStrength));
-    for (const RankedCandidates& list : cell.edges) {
-      std::make_heap(ranked.begin() + list.begin, ranked.begin() + list.end, weaker(workspace, edgeStrength));
-    }
+    rank(cell.corners);
+    for (const RankedCandidates& list : cell.edges) rank(list);
   }
 }
 
-// Removes the best candidate of the list that has room, and returns its index; -1 when none is left.
-template <typename Strength>
-int takeBest(PointChoiceWorkspace& workspace, Strength strength, RankedCandidates& list) {
+constexpr RankedCandidate kNone = {0, -1};
+
+// Removes the best candidate of the list that has room, and returns it; kNone when none is left.
+RankedCandidate takeBest(PointChoiceWorkspace& workspace, RankedCandidates& list) {
   while (list.begin < list.end) {
     const auto heap = workspace.ranked.begin();
-    std::pop_heap(heap + list.begin, heap + list.end, weaker(workspace, strength));
-    const int best = workspace.ranked[static_cast<size_t>(--list.end)];
-    if (workspace.spacing.isFree(candidateOf(workspace, best).pixel)) return best;
+    std::pop_heap(heap + list.begin, heap + list.end, Weaker());
+    const RankedCandidate best = workspace.ranked[static_cast<size_t>(--list.end)];
+    if (workspace.spacing.isFree(candidateOf(workspace, best.candidate).pixel)) return best;
   }
-  return -1;
+  return kNone;
 }
 
-int bestCorner(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
-  return takeBest(workspace, cornerStrength, cell.corners);
+RankedCandidate bestCorner(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
+  return takeBest(workspace, cell.corners);
 }
 
 // The steepest edge point of the direction of which the cell has fewest points.
-int bestEdge(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
+RankedCandidate bestEdge(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
   std::array<size_t, kDirections> order = {0, 1, 2, 3};
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
     const int taken_a = cell.taken_of_direction[a];
@@ -146,16 +146,16 @@ int bestEdge(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
     return taken_a < taken_b || (taken_a == taken_b && a < b);
   });
   for (const size_t direction : order) {
-    const int best = takeBest(workspace, edgeStrength, cell.edges[direction]);
-    if (best >= 0) return best;
+    const RankedCandidate best = takeBest(workspace, cell.edges[direction]);
+    if (best.candidate >= 0) return best;
   }
-  return -1;
+  return kNone;
 }
 
 // Cells with the fewest points come first, so that a rich region doesn't take all: in round n each cell with n points
 // or fewer gives one, the best candidate of all the cells first. Until `budget` points are taken or nothing is left.
-template <typename BestOfCell, typename Strength>
-void takeRoundByRound(int budget, BestOfCell best_of_cell, Strength strength, const PointChoiceOptions& options,
+template <typename BestOfCell>
+void takeRoundByRound(int budget, BestOfCell best_of_cell, const PointChoiceOptions& options,
                       PointChoiceWorkspace& workspace, std::vector<ChosenPoint>& chosen) {
   const size_t limit = chosen.size() + static_cast<size_t>(std::max(budget, 0));
   int fullest = 0;
@@ -165,8 +165,8 @@ void takeRoundByRound(int budget, BestOfCell best_of_cell, Strength strength, co
     offers.clear();
     for (size_t i = 0; i < workspace.cells.size(); ++i) {
       if (workspace.cells[i].taken > round) continue;
-      const int best = best_of_cell(workspace, workspace.cells[i]);
-      if (best >= 0) offers.push_back({static_cast<int>(i), best, strength(candidateOf(workspace, best))});
+      const RankedCandidate best = best_of_cell(workspace, workspace.cells[i]);
+      if (best.candidate >= 0) offers.push_back({static_cast<int>(i), best.candidate, best.strength});
     }
     if (offers.empty() && round >= fullest) return;
     std::sort(offers.begin(), offers.end(), [](const CellOffer& a, const CellOffer& b) {
@@ -213,8 +213,8 @@ void choosePoints(const cv::Mat& grey, const EdgeMap& edges, const std::vector<E
   sortIntoCells(grid, occupied, workspace);
 
   const int corners = std::min(wanted, static_cast<int>(options.corner_share * options.count));
-  takeRoundByRound(corners, bestCorner, cornerStrength, options, workspace, chosen);
-  takeRoundByRound(wanted - static_cast<int>(chosen.size()), bestEdge, edgeStrength, options, workspace, chosen);
+  takeRoundByRound(corners, bestCorner, options, workspace, chosen);
+  takeRoundByRound(wanted - static_cast<int>(chosen.size()), bestEdge, options, workspace, chosen);
 }
 
 std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,

@@ -32,6 +32,11 @@ struct RankedCandidates {
   int end = 0;
 };
 
+struct RankedCandidate {
+  float strength;
+  int candidate;
+};
+
 struct ChoiceCell {
   RankedCandidates corners;
   std::array<RankedCandidates, 4> edges;  // by direction
@@ -51,7 +56,7 @@ struct PointChoiceWorkspace {
   PointSpacing spacing;
   std::vector<PointCandidate> candidates;
   std::vector<ChoiceCell> cells;
-  std::vector<int> ranked;  // indices of candidates; a corner-like one is there twice
+  std::vector<RankedCandidate> ranked;  // a corner-like one is there twice
   std::vector<CellOffer> offers;
 };
 

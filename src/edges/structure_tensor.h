@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
+#include "image/gradient_products.h"
+
 namespace edgeslam {
 
 // Mean over a window of g g^T for the grey gradient g: eigenvalues l1 >= l2 [grey^2/px^2] and the unit direction of l1.
@@ -17,5 +19,14 @@ struct StructureTensor {
 // nearest pixel, with central differences. A window that leaves the image is cut off at the border; zero where nothing
 // is left of it.
 StructureTensor structureTensor(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window);
+
+// In two steps, for those who need the direction of few: the sums over the window, and what of them follows.
+GradientProducts gradientProductsAround(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window);
+struct Eigenvalues {
+  float l1 = 0;
+  float l2 = 0;
+};
+Eigenvalues eigenvalues(const GradientProducts& products);
+StructureTensor structureTensor(const GradientProducts& products);
 
 }  // namespace edgeslam
