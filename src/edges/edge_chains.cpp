@@ -5,12 +5,10 @@
 namespace edgeslam {
 namespace {
 
-constexpr int kTaken = -2;  // in place of the neighbour behind: the point is in a chain, or in no edge
+constexpr int kTaken = kNotNamed;  // in place of the neighbour behind: the point is in a chain, or in none at all
 
-// Of the two ways of a choice only those stay that are mutual. Points that `index` does not name are taken.
-void keepMutual(const cv::Mat& index, EdgeWorkspace& workspace) {
-  std::vector<int>& ahead = workspace.ahead;
-  std::vector<int>& behind = workspace.behind;
+// Of the two ways of a choice only those stay that are mutual.
+void keepMutual(std::vector<int>& ahead, std::vector<int>& behind) {
   for (size_t i = 0; i < ahead.size(); ++i) {
     const int next = ahead[i];
     if (next >= 0 && behind[static_cast<size_t>(next)] != static_cast<int>(i)) ahead[i] = -1;
@@ -18,7 +16,6 @@ void keepMutual(const cv::Mat& index, EdgeWorkspace& workspace) {
   for (size_t i = 0; i < behind.size(); ++i) {
     const int previous = behind[i];
     if (previous >= 0 && ahead[static_cast<size_t>(previous)] != static_cast<int>(i)) behind[i] = -1;
-    if (index.at<int>(workspace.pixels.points[i].cell) != static_cast<int>(i)) behind[i] = kTaken;
   }
 }
 
@@ -57,7 +54,7 @@ void joinChains(int shortest_chain, EdgeWorkspace& workspace, EdgeMap& edges) {
   workspace.ahead.resize(count);
   workspace.behind.resize(count);
   chooseNeighbours(workspace.pixels.points, edges.index, workspace.ahead, workspace.behind);
-  keepMutual(edges.index, workspace);
+  keepMutual(workspace.ahead, workspace.behind);
   edges.points.clear();
   edges.chain_count = 0;
   // Open chains from their beginnings, in the order of the points; what then is left runs in circles.

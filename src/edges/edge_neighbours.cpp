@@ -151,8 +151,8 @@ void chooseByVectors(const std::vector<EdgePixel>& points, const cv::Mat& index,
     for (size_t i = 0; i < count; ++i) {
       const EdgePixel& point = points[first + i];
       const bool is_named = index.ptr<int32_t>(point.cell.y)[point.cell.x] == static_cast<int32_t>(first + i);
-      ahead[first + i] = is_named ? best_ahead[i] : -1;
-      behind[first + i] = is_named ? best_behind[i] : -1;
+      ahead[first + i] = is_named ? best_ahead[i] : kNotNamed;
+      behind[first + i] = is_named ? best_behind[i] : kNotNamed;
     }
   }
 }

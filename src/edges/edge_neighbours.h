@@ -8,10 +8,12 @@
 
 namespace edgeslam {
 
+constexpr int kNotNamed = -2;
+
 // Of each point that `index` names (CV_32S, of one piece) the best continuation among the three pixels ahead along the
 // edge, with the brighter side on the left hand as seen on the screen, and among the three behind; -1 where there is
-// none or the point is not named. The points lie at least one pixel inside the image. `ahead` and `behind` have their
-// number.
+// none, kNotNamed where the index does not name the point. The points lie at least one pixel inside the image. `ahead`
+// and `behind` have their number.
 void chooseNeighbours(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
                       std::vector<int>& behind);
 

@@ -62,8 +62,8 @@ void chooseNeighboursReference(const std::vector<EdgePixel>& points, const cv::M
     const bool is_named = *entry == static_cast<int>(i);
     // Along `ahead` the edge runs a quarter turn from its normal.
     const Eigen::Vector2f direction(-point.normal.y(), point.normal.x());
-    ahead[i] = is_named ? continuation(points, index, point, entry, direction) : -1;
-    behind[i] = is_named ? continuation(points, index, point, entry, -direction) : -1;
+    ahead[i] = is_named ? continuation(points, index, point, entry, direction) : kNotNamed;
+    behind[i] = is_named ? continuation(points, index, point, entry, -direction) : kNotNamed;
   }
 }
 

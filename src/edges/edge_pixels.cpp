@@ -88,56 +88,42 @@ size_t listMarked(const uint8_t* bits, int begin, size_t count, int32_t* HWY_RES
 
 // The least-squares plane's slopes up to a factor, over the (2 radius + 1)^2 pixels around `centre` of the DoG, and how
 // many of them are positive, each in kSummands parts.
-class PlaneFit {
- public:
-  explicit PlaneFit(int radius) : radius_(radius) {
-    int16_t weights[8] = {};
-    int16_t inside[8] = {};
-    for (int i = 0; i <= 2 * radius; ++i) {
-      weights[i] = static_cast<int16_t>(i - radius);
-      inside[i] = 1;
+template <int radius>
+HWY_INLINE void fitPlane(const int16_t* centre, std::ptrdiff_t step, int32_t* HWY_RESTRICT slope_x,
+                         int32_t* HWY_RESTRICT slope_y, int32_t* HWY_RESTRICT positive) {
+  constexpr int16_t kInside = 2 * radius;
+  HWY_ALIGN constexpr int16_t kColumns[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  const Window d;
+  const WindowSums wide;
+  const size_t lanes = hn::Lanes(d);
+  const auto zero = hn::Zero(d);
+  auto x0 = hn::Zero(wide), x1 = hn::Zero(wide), y0 = hn::Zero(wide), y1 = hn::Zero(wide), p0 = hn::Zero(wide),
+       p1 = hn::Zero(wide);
+  for (size_t i = 0; i < 8; i += lanes) {
+    const auto columns = hn::Load(d, kColumns + i);
+    const auto is_inside = hn::Lt(columns, hn::Set(d, kInside + 1));
+    const auto weights = hn::IfThenElseZero(is_inside, hn::Sub(columns, hn::Set(d, radius)));
+    const auto inside = hn::IfThenElseZero(is_inside, hn::Set(d, 1));
+    const int16_t* at = centre - radius * step - radius + i;
+    auto count = zero;
+    auto row_weights = hn::IfThenElseZero(is_inside, hn::Set(d, -radius));
+    for (int row = -radius; row <= radius; ++row, at += step) {
+      const auto values = hn::LoadU(d, at);
+      x0 = hn::ReorderWidenMulAccumulate(wide, values, weights, x0, x1);
+      y0 = hn::ReorderWidenMulAccumulate(wide, values, row_weights, y0, y1);
+      row_weights = hn::Add(row_weights, inside);
+      count = hn::Sub(count, hn::VecFromMask(d, hn::Gt(values, zero)));  // a true mask is -1
     }
-    std::copy_n(weights, 8, along_x_);
-    std::copy_n(inside, 8, inside_);
+    p0 = hn::ReorderWidenMulAccumulate(wide, count, inside, p0, p1);
   }
-
-  void fit(const int16_t* centre, std::ptrdiff_t step, int32_t* HWY_RESTRICT slope_x, int32_t* HWY_RESTRICT slope_y,
-           int32_t* HWY_RESTRICT positive) const {
-    const Window d;
-    const WindowSums wide;
-    const size_t lanes = hn::Lanes(d);
-    const auto zero = hn::Zero(d);
-    auto x0 = hn::Zero(wide), x1 = hn::Zero(wide), y0 = hn::Zero(wide), y1 = hn::Zero(wide), p0 = hn::Zero(wide),
-         p1 = hn::Zero(wide);
-    for (size_t i = 0; i < 8; i += lanes) {
-      const auto weights = hn::LoadU(d, along_x_ + i);
-      const auto inside = hn::LoadU(d, inside_ + i);
-      const int16_t* at = centre - radius_ * step - radius_ + i;
-      auto count = zero;
-      auto row_weights = hn::Mul(inside, hn::Set(d, static_cast<int16_t>(-radius_)));
-      for (int row = -radius_; row <= radius_; ++row, at += step) {
-        const auto values = hn::LoadU(d, at);
-        x0 = hn::ReorderWidenMulAccumulate(wide, values, weights, x0, x1);
-        y0 = hn::ReorderWidenMulAccumulate(wide, values, row_weights, y0, y1);
-        row_weights = hn::Add(row_weights, inside);
-        count = hn::Sub(count, hn::VecFromMask(d, hn::Gt(values, zero)));  // a true mask is -1
-      }
-      p0 = hn::ReorderWidenMulAccumulate(wide, count, inside, p0, p1);
-    }
-    hn::StoreU(hn::Add(x0, x1), wide, slope_x);
-    hn::StoreU(hn::Add(y0, y1), wide, slope_y);
-    hn::StoreU(hn::Add(p0, p1), wide, positive);
-  }
-
- private:
-  int radius_;
-  int16_t along_x_[8];
-  int16_t inside_[8];
-};
+  hn::StoreU(hn::Add(x0, x1), wide, slope_x);
+  hn::StoreU(hn::Add(y0, y1), wide, slope_y);
+  hn::StoreU(hn::Add(p0, p1), wide, positive);
+}
 
 // Fills in what lies around the first `count` candidates of row y.
-void gather(const DifferenceOfGaussians& images, int y, size_t count, const PlaneFit& plane,
-            EdgeCandidates& candidates) {
+template <int radius>
+void gather(const DifferenceOfGaussians& images, int y, size_t count, EdgeCandidates& candidates) {
   const auto* narrow = images.narrow.ptr<int16_t>(y);
   const auto* dog = images.dog.ptr<int16_t>(y);
   const auto narrow_step = static_cast<std::ptrdiff_t>(images.narrow.step1());
@@ -155,8 +141,8 @@ void gather(const DifferenceOfGaussians& images, int y, size_t count, const Plan
     candidates.before[i] = smoothed(dog + x - across);
     candidates.here[i] = smoothed(dog + x);
     candidates.after[i] = smoothed(dog + x + across);
-    plane.fit(dog + x, dog_step, &candidates.slope_x[kSummands * i], &candidates.slope_y[kSummands * i],
-              &candidates.positive[kSummands * i]);
+    fitPlane<radius>(dog + x, dog_step, &candidates.slope_x[kSummands * i], &candidates.slope_y[kSummands * i],
+                     &candidates.positive[kSummands * i]);
   }
 }
 
@@ -293,11 +279,11 @@ bool findByVectors(const DifferenceOfGaussians& images, const EdgeOptions& optio
   const Thresholds thresholds = {threshold * threshold,
                                  static_cast<int32_t>(std::floor(std::clamp(options.sign_balance, -1.0, 1.0) * window)),
                                  window};
-  const PlaneFit plane(radius);
+  const auto gather_row = radius == 1 ? gather<1> : radius == 2 ? gather<2> : gather<3>;
   for (int y = margin; y < size.height - margin; ++y) {
     markRow(images, y, margin, count, leastDifference(options), pixels.candidates.marks.data());
     const size_t listed = listMarked(pixels.candidates.marks.data(), margin, count, pixels.candidates.x.data());
-    gather(images, y, listed, plane, pixels.candidates);
+    gather_row(images, y, listed, pixels.candidates);
     addEdges(listed, y, thresholds, mostEdgePoints(size), pixels, index.ptr<int32_t>(y));
   }
   return true;

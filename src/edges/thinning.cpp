@@ -1,6 +1,7 @@
 #include "edges/thinning.h"
 
 #include <cmath>
+#include <cstddef>
 
 namespace edgeslam {
 namespace {
@@ -10,19 +11,19 @@ bool nearerToRows(const Eigen::Vector2f& normal) { return std::abs(normal.x()) >
 }  // namespace
 
 void thin(const std::vector<EdgePixel>& points, cv::Mat& index) {
+  const auto row_step = static_cast<std::ptrdiff_t>(index.step1());
   for (const EdgePixel& point : points) {
-    int& here = index.at<int>(point.cell);
-    const cv::Point across = nearerToRows(point.normal) ? cv::Point(1, 0) : cv::Point(0, 1);
-    for (const cv::Point& side : {-across, across}) {
-      int& beside = index.at<int>(point.cell + side);
-      if (here < 0 || beside < 0) continue;
-      const EdgePixel& other = points[static_cast<size_t>(beside)];
+    int& here = index.ptr<int>(point.cell.y)[point.cell.x];
+    const std::ptrdiff_t across = nearerToRows(point.normal) ? 1 : row_step;
+    for (int* beside : {&here - across, &here + across}) {
+      if (*beside < 0 || here < 0) continue;
+      const EdgePixel& other = points[static_cast<size_t>(*beside)];
       // Where the edge turns from rows to columns, neighbours may follow each other along it.
       if (nearerToRows(point.normal) != nearerToRows(other.normal) &&
           std::abs(point.normal.dot(other.pixel - point.pixel)) > 0.5F) {
         continue;
       }
-      (std::abs(point.offset) > std::abs(other.offset) ? here : beside) = -1;
+      (std::abs(point.offset) > std::abs(other.offset) ? here : *beside) = -1;
     }
   }
 }

@@ -98,24 +98,37 @@ void sumColumns(const std::vector<const uint8_t*>& rows, const FixedGaussian& ga
   hn::StoreU(hn::Xor(lowerHalves(even_sum, odd_sum), sign), Narrow(), lower + x + radius);
 }
 
-// Sums along the row around a vector of pixels; `parts` starts `radius` pixels to the left of the first.
-void sumAlongRow(const int16_t* HWY_RESTRICT parts, const FixedGaussian& gaussian, WideVector& even_sum,
-                 WideVector& odd_sum) {
-  Sum even;
-  Sum odd;
-  const std::vector<int32_t>& pairs = gaussian.pairs_across;
-  for (size_t i = 0; i < pairs.size(); ++i) {
+// Sums of both parts along the row around a vector of pixels, for even and for odd lanes.
+struct RowSums {
+  WideVector even_upper;
+  WideVector odd_upper;
+  WideVector even_lower;
+  WideVector odd_lower;
+};
+
+// `upper` and `lower` start `radius` pixels to the left of the first.
+HWY_INLINE RowSums sumAlongRow(const int16_t* HWY_RESTRICT upper, const int16_t* HWY_RESTRICT lower,
+                               const FixedGaussian& gaussian) {
+  Sum even_upper, odd_upper, even_lower, odd_lower;
+  const int32_t* pairs = gaussian.pairs_across.data();
+  const size_t count = gaussian.pairs_across.size();
+  for (size_t i = 0; i < count; ++i) {
     const Vector weights = weightsOf(pairs[i]);
-    even.add(hn::LoadU(Narrow(), parts + 2 * i), weights);
-    odd.add(hn::LoadU(Narrow(), parts + 2 * i + 1), weights);
+    even_upper.add(hn::LoadU(Narrow(), upper + 2 * i), weights);
+    odd_upper.add(hn::LoadU(Narrow(), upper + 2 * i + 1), weights);
+    even_lower.add(hn::LoadU(Narrow(), lower + 2 * i), weights);
+    odd_lower.add(hn::LoadU(Narrow(), lower + 2 * i + 1), weights);
   }
-  even_sum = even.total();
-  odd_sum = odd.total();
+  RowSums sums = {even_upper.total(), odd_upper.total(), even_lower.total(), odd_lower.total()};
   if (gaussian.centre_is_less) {
-    const Vector centre = hn::LoadU(Narrow(), parts + gaussian.radius());
-    even_sum = hn::Add(even_sum, lackOfEven(centre));
-    odd_sum = hn::Add(odd_sum, lackOfOdd(centre));
+    const Vector centre_upper = hn::LoadU(Narrow(), upper + gaussian.radius());
+    const Vector centre_lower = hn::LoadU(Narrow(), lower + gaussian.radius());
+    sums.even_upper = hn::Add(sums.even_upper, lackOfEven(centre_upper));
+    sums.odd_upper = hn::Add(sums.odd_upper, lackOfOdd(centre_upper));
+    sums.even_lower = hn::Add(sums.even_lower, lackOfEven(centre_lower));
+    sums.odd_lower = hn::Add(sums.odd_lower, lackOfOdd(centre_lower));
   }
+  return sums;
 }
 
 // What the parts are worth in the end. Of a kernel that sums to 1 << 16, a column's sum of S is upper * 2^16 + lower +
@@ -157,10 +170,8 @@ void blurRow(const cv::Mat& image, const FixedGaussian& gaussian, int y, Differe
     std::fill_n(end, radius + 1, end[-1]);
   }
   forVectors(width, [&](size_t x) HWY_ATTR {
-    WideVector even_upper, odd_upper, even_lower, odd_lower;
-    sumAlongRow(upper + x, gaussian, even_upper, odd_upper);
-    sumAlongRow(lower + x, gaussian, even_lower, odd_lower);
-    take(x, lowerHalves(Blur::round(even_upper, even_lower), Blur::round(odd_upper, odd_lower)));
+    const RowSums sums = sumAlongRow(upper + x, lower + x, gaussian);
+    take(x, lowerHalves(Blur::round(sums.even_upper, sums.even_lower), Blur::round(sums.odd_upper, sums.odd_lower)));
   });
 }
 
