@@ -31,8 +31,10 @@ Eigen::Matrix2d whiteningWithDepth(const PoseObservation& observation) {
   return inverse_root * edge_axes;
 }
 
-std::vector<PreparedObservation> prepare(const std::vector<PoseObservation>& observations) {
-  std::vector<PreparedObservation> prepared;
+using PreparedObservations = std::pmr::vector<PreparedObservation>;
+
+PreparedObservations prepare(const PoseObservations& observations, std::pmr::memory_resource* memory) {
+  PreparedObservations prepared(memory);
   prepared.reserve(observations.size());
   for (const PoseObservation& o : observations) {
     prepared.push_back({o.point, {o.measurement.pixel, whiteningWithDepth(o)}});
@@ -47,8 +49,8 @@ struct NormalEquations {
   Vector6d gradient = Vector6d::Zero();
 };
 
-NormalEquations linearize(const Camera& camera, const Pose& world_T_camera,
-                          const std::vector<PreparedObservation>& observations, double huber, double behind_norm) {
+NormalEquations linearize(const Camera& camera, const Pose& world_T_camera, const PreparedObservations& observations,
+                          double huber, double behind_norm) {
   const CameraFrame frame = cameraFrame(world_T_camera);
   const double behind_cost = huberLoss(behind_norm * behind_norm, huber);
   NormalEquations equations;
@@ -88,8 +90,7 @@ bool solveDamped(const NormalEquations& equations, double damping, Vector6d& ste
 
 // Levenberg's minimisation with the weights renewed at every step. While far from the solution Huber's threshold is
 // wide, so that a prediction several pixels off does not make every observation an outlier.
-bool minimize(const Camera& camera, const std::vector<PreparedObservation>& observations, const PoseOptions& options,
-              Pose& pose) {
+bool minimize(const Camera& camera, const PreparedObservations& observations, const PoseOptions& options, Pose& pose) {
   constexpr int kWideIterations = 3;
   constexpr double kWideFactor = 5;
   constexpr double kLeastDamping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
@@ -133,8 +134,8 @@ bool minimize(const Camera& camera, const std::vector<PreparedObservation>& obse
 }
 
 // Inliers, rms and covariance at the final pose.
-bool judge(const Camera& camera, const std::vector<PreparedObservation>& observations, const PoseOptions& options,
-           const Pose& pose, PoseResult& result) {
+bool judge(const Camera& camera, const PreparedObservations& observations, const PoseOptions& options, const Pose& pose,
+           PoseResult& result) {
   const CameraFrame frame = cameraFrame(pose);
   Matrix6d information = Matrix6d::Zero();
   Eigen::Array2d weighted_squares = Eigen::Array2d::Zero();  // across the edge, along it
@@ -170,13 +171,13 @@ bool judge(const Camera& camera, const std::vector<PreparedObservation>& observa
 
 }  // namespace
 
-PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera,
-                      const std::vector<PoseObservation>& observations, const PoseOptions& options) {
-  PoseResult result;
+PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
+                      const PoseOptions& options, std::pmr::memory_resource* memory) {
+  PoseResult result(memory);
   result.world_T_camera = initial_world_T_camera;
   result.inliers.assign(observations.size(), 0);
   if (observations.empty() || static_cast<int>(observations.size()) < options.fewest) return result;
-  const std::vector<PreparedObservation> prepared = prepare(observations);
+  const PreparedObservations prepared = prepare(observations, memory);
   Pose pose = initial_world_T_camera;
   if (!minimize(camera, prepared, options, pose)) return result;
   if (!judge(camera, prepared, options, pose, result)) return result;

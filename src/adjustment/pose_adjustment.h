@@ -2,6 +2,7 @@
 // (design, section 5).
 #pragma once
 
+#include <memory_resource>
 #include <vector>
 
 #include "geometry/camera.h"
@@ -19,6 +20,8 @@ struct PoseObservation {
   Eigen::Vector2d depth_direction = Eigen::Vector2d::UnitX();
 };
 
+using PoseObservations = std::pmr::vector<PoseObservation>;
+
 struct PoseOptions {
   int iterations = 10;
   double huber = 1.5;    // whitened, of the norm of a measurement's two residuals
@@ -27,6 +30,8 @@ struct PoseOptions {
 };
 
 struct PoseResult {
+  explicit PoseResult(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : inliers(memory) {}
+
   // False: too few observations or inliers, or the normal equations are singular. The pose is the start's then.
   bool converged = false;
   Pose world_T_camera;
@@ -34,13 +39,14 @@ struct PoseResult {
   // residuals where these exceed what the sigmas say, never down. A direction that nothing measures has a large
   // variance.
   Matrix6d covariance = Matrix6d::Zero();
-  std::vector<char> inliers;  // one an observation
+  std::pmr::vector<char> inliers;  // one an observation
   int inlier_count = 0;
   double rms = 0;  // of the inliers' whitened residual norms
 };
 
-// Observations behind the camera, or with values that are not finite, count as outliers.
-PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera,
-                      const std::vector<PoseObservation>& observations, const PoseOptions& options);
+// Observations behind the camera, or with values that are not finite, count as outliers. `memory` serves the result and
+// what is needed on the way.
+PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
+                      const PoseOptions& options, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 }  // namespace edgeslam

@@ -34,11 +34,11 @@ class Recorder : public DecisionSink {
     entry.time_ns = time_ns;
     thread_.post(std::move(entry));
   }
-  void processed(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) noexcept override {
+  void processed(const std::shared_ptr<const FrameImages>& images) noexcept override {
     RecordingEntry entry;
-    entry.grey = grey;
-    entry.index = index;
-    entry.time_ns = time_ns;
+    entry.images = images;
+    entry.index = images->frame_index;
+    entry.time_ns = images->time_ns;
     thread_.post(std::move(entry));
   }
   void unreadable(std::int64_t index, std::int64_t time_ns, const std::string& problem) noexcept override {

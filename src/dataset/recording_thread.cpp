@@ -94,7 +94,7 @@ void RecordingThread::writeUntilStopped() {
     if (deadline && Clock::now() >= *deadline) return;
     if (queue_.pop(queued)) {
       write(queued);
-      queued.entry.grey.release();
+      queued.entry.images.reset();
       publishStatus();
     } else if (stopping) {
       return;
@@ -113,7 +113,7 @@ void RecordingThread::write(const QueuedEntry& queued) {
   writeLost(queued.lost_before);
   const RecordingEntry& entry = queued.entry;
   if (entry.kind == DecisionKind::frame) {
-    writer_.writeFrame(entry.index, entry.time_ns, entry.grey);
+    writer_.writeFrame(entry.index, entry.time_ns, entry.images->pyramid.levels[0]);
   } else {
     writer_.writeDecision({entry.kind, entry.index, entry.time_ns, entry.number, entry.reason.data()});
   }

@@ -5,20 +5,21 @@
 #include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
+#include <memory>
 #include <mutex>
-#include <opencv2/core/mat.hpp>
 #include <string>
 #include <string_view>
 #include <thread>
 
 #include "dataset/recording_writer.h"
+#include "map/keyframe.h"
 
 namespace edgeslam {
 
 // A frame or a decision on its way to the recorder. Copying it neither allocates nor copies pixels.
 struct RecordingEntry {
   DecisionKind kind = DecisionKind::frame;  // any but `gap`, `stopped` and `end`, which the thread writes itself
-  cv::Mat grey;  // of a frame: CV_8U, shared and never changed again; it owns its pixels (no view of a driver's buffer)
+  std::shared_ptr<const FrameImages> images;  // of a frame
   std::int64_t index = 0;  // as in Decision
   std::int64_t time_ns = 0;
   std::int64_t number = 0;

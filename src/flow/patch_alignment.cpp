@@ -15,43 +15,100 @@ bool readable(const cv::Mat& image, const Eigen::Vector2f& pixel, float radius) 
          pixel.y() < static_cast<float>(image.rows - 1) + margin;  // false for NaN
 }
 
-float sampleBilinear(const cv::Mat& image, float x, float y) {
-  const float x_floor = std::floor(x), y_floor = std::floor(y);
-  const float a = x - x_floor, b = y - y_floor;
-  const auto step = static_cast<std::ptrdiff_t>(image.step[0]);
-  const unsigned char* p =
-      image.data + static_cast<std::ptrdiff_t>(y_floor) * step + static_cast<std::ptrdiff_t>(x_floor);
-  return (1 - b) * ((1 - a) * static_cast<float>(p[0]) + a * static_cast<float>(p[1])) +
-         b * ((1 - a) * static_cast<float>(p[step]) + a * static_cast<float>(p[step + 1]));
-}
+constexpr float grey_unit = 1.0f / samples_per_grey;            // of a sample [grey]
+constexpr float gradient_unit = 1.0f / (2 * samples_per_grey);  // of a sample of the gradient [grey/px]
 
-// side x side samples around `centre`, unit spacing: one set of bilinear weights for all.
-void sampleWindow(const cv::Mat& image, const Eigen::Vector2f& centre, int side, float* samples) {
+// Where a window around a pixel begins, and how the pixels there are blended.
+struct WindowPlace {
+  const std::uint8_t* corner;
+  std::ptrdiff_t step;
+  BilinearWeights weights;
+};
+
+WindowPlace placeAround(const cv::Mat& image, const Eigen::Vector2f& centre, int side) {
   const float left = centre.x() - static_cast<float>(side / 2), top = centre.y() - static_cast<float>(side / 2);
   const float left_floor = std::floor(left), top_floor = std::floor(top);
-  const float a = left - left_floor, b = top - top_floor;
-  const float w00 = (1 - a) * (1 - b), w01 = a * (1 - b), w10 = (1 - a) * b, w11 = a * b;
   const auto step = static_cast<std::ptrdiff_t>(image.step[0]);
-  const unsigned char* row =
-      image.data + static_cast<std::ptrdiff_t>(top_floor) * step + static_cast<std::ptrdiff_t>(left_floor);
-  for (int y = 0; y < side; ++y, row += step, samples += side) {
-    const unsigned char* below = row + step;
-    for (int x = 0; x < side; ++x) {
-      samples[x] = w00 * static_cast<float>(row[x]) + w01 * static_cast<float>(row[x + 1]) +
-                   w10 * static_cast<float>(below[x]) + w11 * static_cast<float>(below[x + 1]);
+  return {image.data + static_cast<std::ptrdiff_t>(top_floor) * step + static_cast<std::ptrdiff_t>(left_floor), step,
+          bilinearWeights(left - left_floor, top - top_floor)};
+}
+
+// Samples (side + 2)^2 positions that `warp` spreads out around `centre`, in steps of 1/2^16 px.
+void sampleWarped(const cv::Mat& image, const Eigen::Vector2f& centre, const Eigen::Matrix2f& warp, int side,
+                  SampledWindow& window) {
+  constexpr int one = 1 << 16;
+  const int outer = side + 2, radius = outer / 2;
+  const auto fixed = [](float value) { return static_cast<std::int32_t>(std::lround(value * one)); };
+  const std::int32_t x_by_column = fixed(warp(0, 0)), y_by_column = fixed(warp(1, 0)), x_by_row = fixed(warp(0, 1)),
+                     y_by_row = fixed(warp(1, 1));
+  const auto step = static_cast<std::ptrdiff_t>(image.step[0]);
+  for (int row = 0; row < outer; ++row) {
+    std::int32_t x = fixed(centre.x()) + (row - radius) * x_by_row - radius * x_by_column;
+    std::int32_t y = fixed(centre.y()) + (row - radius) * y_by_row - radius * y_by_column;
+    std::int16_t* samples = window.data() + row * window_row;
+    for (int column = 0; column < outer; ++column, x += x_by_column, y += y_by_column) {
+      const std::uint8_t* at = image.data + (y >> 16) * step + (x >> 16);
+      const int right = (x >> 8) & 255, below = (y >> 8) & 255;
+      const int upper = (256 - right) * at[0] + right * at[1];
+      const int lower = (256 - right) * at[step] + right * at[step + 1];
+      samples[column] = static_cast<std::int16_t>(((256 - below) * upper + below * lower + (1 << 12)) >> 13);
     }
   }
 }
 
-void sampleWarped(const cv::Mat& image, const Eigen::Vector2f& centre, const Eigen::Matrix2f& warp, int side,
-                  float* samples) {
-  const int radius = side / 2;
-  for (int y = -radius; y <= radius; ++y) {
-    for (int x = -radius; x <= radius; ++x) {
-      const Eigen::Vector2f at = centre + warp * Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y));
-      *samples++ = sampleBilinear(image, at.x(), at.y());
-    }
-  }
+// Sums in units of grey values and pixels, of values whose mean is taken off exactly.
+void writeTemplate(const PatchSums& sums, PatchTemplate& patch) {
+  const PatchSamples& samples = patch.samples;
+  const auto n = static_cast<double>(samples.side * samples.side);
+  const double grey = sums.grey, x = sums.x, y = sums.y;
+  patch.grey_left = static_cast<float>(grey / n);
+  patch.x_left = static_cast<float>(x / n);
+  patch.y_left = static_cast<float>(y / n);
+  const double gradient_square = static_cast<double>(gradient_unit) * gradient_unit,
+               mixed = static_cast<double>(gradient_unit) * grey_unit,
+               grey_square = static_cast<double>(grey_unit) * grey_unit;
+  Eigen::Matrix3f& h = patch.normal_matrix;
+  h(0, 0) = static_cast<float>((sums.xx - x * x / n) * gradient_square);
+  h(1, 1) = static_cast<float>((sums.yy - y * y / n) * gradient_square);
+  h(2, 2) = static_cast<float>((sums.grey_grey - grey * grey / n) * grey_square);
+  h(0, 1) = h(1, 0) = static_cast<float>((sums.xy - x * y / n) * gradient_square);
+  h(0, 2) = h(2, 0) = static_cast<float>((sums.grey_x - x * grey / n) * mixed);
+  h(1, 2) = h(2, 1) = static_cast<float>((sums.grey_y - y * grey / n) * mixed);
+  const double x_mean = x / n + samples.x_mean, y_mean = y / n + samples.y_mean;
+  const auto mean_x = static_cast<float>(x_mean * gradient_unit), mean_y = static_cast<float>(y_mean * gradient_unit);
+  patch.tensor = h.topLeftCorner<2, 2>() / static_cast<float>(n);
+  patch.tensor(0, 0) += mean_x * mean_x;
+  patch.tensor(0, 1) += mean_x * mean_y;
+  patch.tensor(1, 0) += mean_x * mean_y;
+  patch.tensor(1, 1) += mean_y * mean_y;
+}
+
+// A window compared with the patch, each less its mean, in units of grey values and pixels.
+struct PatchComparison {
+  float square = 0;                           // of the window
+  float product = 0, with_x = 0, with_y = 0;  // of the window with the patch, and with its gradient
+};
+
+PatchComparison compare(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel) {
+  const WindowPlace place = placeAround(image, pixel, patch.samples.side);
+  const ComparisonSums sums = comparePatch(patch.samples, place.corner, place.step, place.weights);
+  const double count = patch.samples.side * patch.samples.side;
+  const auto sum = static_cast<float>(sums.samples);
+  PatchComparison comparison;
+  comparison.square = static_cast<float>(sums.squares - static_cast<double>(sums.samples) * sums.samples / count) *
+                      (grey_unit * grey_unit);
+  comparison.product = (static_cast<float>(sums.with_grey) - patch.grey_left * sum) * (grey_unit * grey_unit);
+  comparison.with_x = (static_cast<float>(sums.with_x) - patch.x_left * sum) * (gradient_unit * grey_unit);
+  comparison.with_y = (static_cast<float>(sums.with_y) - patch.y_left * sum) * (gradient_unit * grey_unit);
+  return comparison;
+}
+
+float correlation(const PatchTemplate& patch, const PatchComparison& comparison) {
+  const auto count = static_cast<float>(patch.samples.side * patch.samples.side);
+  // Of two variances of a tenth grey value squared: on flat patches the correlation would be rounding errors over
+  // nothing.
+  const float least_square = 0.01f * count * count;
+  return comparison.product / std::sqrt(std::max(least_square, comparison.square * patch.normal_matrix(2, 2)));
 }
 
 }  // namespace
@@ -62,45 +119,20 @@ bool makeTemplate(const cv::Mat& image, const Eigen::Vector2f& pixel, const Eige
   const auto radius = static_cast<float>(outer / 2);
   const float reach = radius * std::max(warp.row(0).cwiseAbs().sum(), warp.row(1).cwiseAbs().sum());
   if (!readable(image, pixel, reach)) return false;
-  std::array<float, (largest_patch_side + 2) * (largest_patch_side + 2)> samples;
+  SampledWindow window;
   if (warp == Eigen::Matrix2f::Identity()) {
-    sampleWindow(image, pixel, outer, samples.data());
+    const WindowPlace place = placeAround(image, pixel, outer);
+    sampleWindow(place.corner, place.step, place.weights, side, window);
   } else {
-    sampleWarped(image, pixel, warp, outer, samples.data());
+    sampleWarped(image, pixel, warp, side, window);
   }
-  const int count = side * side;
-  patch.side = side;
-  patch.grey.resize(count);
-  patch.gradient_x.resize(count);
-  patch.gradient_y.resize(count);
-  for (int y = 0; y < side; ++y) {
-    const float* row = samples.data() + (y + 1) * outer + 1;
-    for (int x = 0; x < side; ++x) {
-      patch.grey[y * side + x] = row[x];
-      patch.gradient_x[y * side + x] = 0.5f * (row[x + 1] - row[x - 1]);
-      patch.gradient_y[y * side + x] = 0.5f * (row[x + outer] - row[x - outer]);
-    }
-  }
-  const auto n = static_cast<float>(count);
-  const float xx = patch.gradient_x.squaredNorm(), xy = patch.gradient_x.dot(patch.gradient_y),
-              yy = patch.gradient_y.squaredNorm();
-  patch.tensor << xx / n, xy / n, xy / n, yy / n;
-  patch.grey.array() -= patch.grey.mean();
-  patch.gradient_x.array() -= patch.gradient_x.mean();
-  patch.gradient_y.array() -= patch.gradient_y.mean();
-  Eigen::Matrix3f& h = patch.normal_matrix;
-  h(0, 0) = patch.gradient_x.squaredNorm();
-  h(1, 1) = patch.gradient_y.squaredNorm();
-  h(2, 2) = patch.grey.squaredNorm();
-  h(0, 1) = h(1, 0) = patch.gradient_x.dot(patch.gradient_y);
-  h(0, 2) = h(2, 0) = patch.gradient_x.dot(patch.grey);
-  h(1, 2) = h(2, 1) = patch.gradient_y.dot(patch.grey);
+  writeTemplate(makePatchSamples(window, side, patch.samples), patch);
   return true;
 }
 
 AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& start,
                            const Eigen::Vector2f& prediction, const AlignmentOptions& options) {
-  const auto count = static_cast<float>(patch.side * patch.side);
+  const auto count = static_cast<float>(patch.samples.side * patch.samples.side);
   const float damping = options.damping * count;
   Eigen::Matrix3f h = patch.normal_matrix;
   h(0, 0) += damping;
@@ -110,23 +142,17 @@ AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, con
 
   AlignmentResult result;
   result.pixel = start;
-  PatchTemplate::Samples samples(patch.grey.size());
-  // Of two variances of a tenth grey value squared: on flat patches the correlation would be rounding errors over
-  // nothing.
-  const float least_square = 0.01f * count * count;
-  const auto radius = static_cast<float>(patch.side / 2);
+  const auto radius = static_cast<float>(patch.samples.side / 2);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     if (!readable(image, result.pixel, radius)) return result;
-    sampleWindow(image, result.pixel, patch.side, samples.data());
-    const float sum = samples.sum(), square = samples.squaredNorm(), product = patch.grey.dot(samples);
-    const float variance = square - sum * sum / count;
-    result.correlation = product / std::sqrt(std::max(least_square, variance * patch.normal_matrix(2, 2)));
     // Normal equations of T(x + delta) (1 + gain) + bias = I(x + pixel); the template's terms have no mean, so the bias
     // drops out.
+    const PatchComparison comparison = compare(patch, image, result.pixel);
+    result.correlation = correlation(patch, comparison);
     const Eigen::Vector2f pull = damping * (result.pixel - prediction);
-    const Eigen::Vector3f right(patch.gradient_x.dot(samples) - patch.normal_matrix(0, 2) + pull.x(),
-                                patch.gradient_y.dot(samples) - patch.normal_matrix(1, 2) + pull.y(),
-                                product - patch.normal_matrix(2, 2));
+    const Eigen::Vector3f right(comparison.with_x - patch.normal_matrix(0, 2) + pull.x(),
+                                comparison.with_y - patch.normal_matrix(1, 2) + pull.y(),
+                                comparison.product - patch.normal_matrix(2, 2));
     const Eigen::Vector2f step = (inverse * right).head<2>();
     result.pixel -= step;
     if (step.squaredNorm() < options.convergence * options.convergence) {
@@ -136,6 +162,20 @@ AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, con
   }
   result.inside = readable(image, result.pixel, radius);
   return result;
+}
+
+float correlationAt(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel) {
+  if (!readable(image, pixel, static_cast<float>(patch.samples.side / 2))) return -1;
+  return correlation(patch, compare(patch, image, pixel));
+}
+
+PatchDifference differenceAt(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel) {
+  const PatchComparison comparison = compare(patch, image, pixel);
+  const Eigen::Matrix3f& h = patch.normal_matrix;
+  PatchDifference difference;
+  difference.squares = std::max(0.0f, comparison.square - 2 * comparison.product + h(2, 2));
+  difference.along_gradient = {comparison.with_x - h(0, 2), comparison.with_y - h(1, 2)};
+  return difference;
 }
 
 }  // namespace edgeslam

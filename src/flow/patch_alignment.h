@@ -4,21 +4,18 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <opencv2/core/mat.hpp>
+
+#include "flow/patch_kernels.h"
 
 namespace edgeslam {
 
-constexpr int largest_patch_side = 15;
-
 // The patch to be found, with what the inverse-compositional steps need of it.
 struct PatchTemplate {
-  using Samples = Eigen::Matrix<float, Eigen::Dynamic, 1, 0, largest_patch_side * largest_patch_side, 1>;
-  int side = 0;        // [px], odd
-  Samples grey;        // less their mean
-  Samples gradient_x;  // of the patch, [grey/px], less their mean
-  Samples gradient_y;
-  Eigen::Matrix3f normal_matrix;  // of (x, y, gain); the bias is taken out by the means
+  PatchSamples samples;
+  // Means that were left in the samples by rounding, in their units.
+  float grey_left = 0, x_left = 0, y_left = 0;
+  Eigen::Matrix3f normal_matrix;  // of (x, y, gain) [grey, px]; the bias is taken out by the means
   Eigen::Matrix2f tensor;         // mean of g g^T [grey^2/px^2]
 };
 
@@ -44,5 +41,17 @@ struct AlignmentResult {
 // Position in `image` that matches the patch best, from `start`, damped towards `prediction` [px of that level].
 AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& start,
                            const Eigen::Vector2f& prediction, const AlignmentOptions& options);
+
+// A window less the patch, each less its mean.
+struct PatchDifference {
+  float squares = 0;                                         // summed [grey^2]
+  Eigen::Vector2f along_gradient = Eigen::Vector2f::Zero();  // times the patch's gradient, summed [grey^2/px]
+};
+
+// Of the window of `image` around `pixel`, which lies inside the image.
+PatchDifference differenceAt(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel);
+
+// Normalized cross-correlation of the patch with `image` around `pixel`; -1 where it leaves the readable part.
+float correlationAt(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel);
 
 }  // namespace edgeslam

@@ -9,10 +9,13 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
+#include "geometry/three_point_pose.h"
+
 namespace edgeslam {
 namespace {
 
-using Points = std::vector<Eigen::Vector3d>;
+using Points = Vectors3;
+using Indices = std::pmr::vector<std::size_t>;
 
 constexpr std::size_t kLeastPoints = 6;
 constexpr std::size_t kSample = 4;     // three for P3P, one to choose among its solutions
@@ -26,7 +29,7 @@ struct Normalized {
   std::vector<cv::Point2d> pixels;  // camera, z = 1
 };
 
-Normalized normalized(const Points& points, const Points& bearings, const std::vector<std::size_t>& chosen) {
+Normalized normalized(const Points& points, const Points& bearings, const Indices& chosen) {
   Normalized result;
   for (const std::size_t i : chosen) {
     result.points.emplace_back(points[i].x(), points[i].y(), points[i].z());
@@ -41,13 +44,21 @@ double angularError(const Pose& camera_T_world, const Eigen::Vector3d& point, co
 }
 
 // Those of `among` within `threshold` [rad] under a pose.
-std::vector<std::size_t> within(const Pose& camera_T_world, const Points& points, const Points& bearings,
-                                const std::vector<std::size_t>& among, double threshold) {
-  std::vector<std::size_t> kept;
+Indices within(const Pose& camera_T_world, const Points& points, const Points& bearings, const Indices& among,
+               double threshold) {
+  Indices kept(among.get_allocator());
+  kept.reserve(among.size());
   for (const std::size_t i : among) {
     if (angularError(camera_T_world, points[i], bearings[i]) < threshold) kept.push_back(i);
   }
   return kept;
+}
+
+std::size_t countWithin(const Pose& camera_T_world, const Points& points, const Points& bearings, const Indices& among,
+                        double threshold) {
+  return static_cast<std::size_t>(std::count_if(among.begin(), among.end(), [&](std::size_t i) {
+    return angularError(camera_T_world, points[i], bearings[i]) < threshold;
+  }));
 }
 
 Pose poseOf(const cv::Mat& rotation_vector, const cv::Mat& translation) {
@@ -57,7 +68,7 @@ Pose poseOf(const cv::Mat& rotation_vector, const cv::Mat& translation) {
 }
 
 // Points on one line, or in one place, leave the camera free to turn about it.
-bool spanPlane(const Points& points, const std::vector<std::size_t>& chosen) {
+bool spanPlane(const Points& points, const Indices& chosen) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const std::size_t i : chosen) mean += points[i] / static_cast<double>(chosen.size());
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
@@ -68,7 +79,7 @@ bool spanPlane(const Points& points, const std::vector<std::size_t>& chosen) {
 }
 
 // The first `kSample` of `order` become a random sample of it.
-void drawSample(std::vector<std::size_t>* order, std::mt19937_64* random) {
+void drawSample(Indices* order, std::mt19937_64* random) {
   for (std::size_t k = 0; k < kSample; ++k) {
     std::swap((*order)[k], (*order)[k + (*random)() % (order->size() - k)]);
   }
@@ -82,23 +93,21 @@ double iterationsNeeded(std::size_t inliers, std::size_t all) {
 
 // RANSAC on minimal samples: P3P, the pose with the most inliers. EPnP itself needs more points, and fails on samples
 // of them that lie in one plane.
-Pose sampleConsensus(const Points& points, const Points& bearings, const std::vector<std::size_t>& usable,
-                     double threshold, std::uint64_t seed, int iterations) {
+Pose sampleConsensus(const Points& points, const Points& bearings, const Indices& usable, double threshold,
+                     std::uint64_t seed, int iterations) {
   Pose best;
   std::size_t best_count = 0;
   std::mt19937_64 random(seed);
-  std::vector<std::size_t> order = usable;
+  Indices order(usable, usable.get_allocator());
   for (int iteration = 0; iteration < iterations; ++iteration) {
     drawSample(&order, &random);
     const std::size_t fourth = order[3];
-    const Normalized sample = normalized(points, bearings, {order[0], order[1], order[2]});
-    std::vector<cv::Mat> rotation_vectors, translations;
-    cv::solveP3P(sample.points, sample.pixels, cv::Matx33d::eye(), cv::noArray(), rotation_vectors, translations,
-                 cv::SOLVEPNP_AP3P);
-    for (std::size_t k = 0; k < rotation_vectors.size(); ++k) {
-      const Pose candidate = poseOf(rotation_vectors[k], translations[k]);
+    const ThreePointPoses poses = posesFromThreePoints({points[order[0]], points[order[1]], points[order[2]]},
+                                                       {bearings[order[0]], bearings[order[1]], bearings[order[2]]});
+    for (int k = 0; k < poses.count; ++k) {
+      const Pose& candidate = poses.camera_T_world[static_cast<std::size_t>(k)];
       if (!(angularError(candidate, points[fourth], bearings[fourth]) < threshold)) continue;
-      const std::size_t count = within(candidate, points, bearings, usable, threshold).size();
+      const std::size_t count = countWithin(candidate, points, bearings, usable, threshold);
       if (count <= best_count) continue;
       best_count = count;
       best = candidate;
@@ -109,16 +118,16 @@ Pose sampleConsensus(const Points& points, const Points& bearings, const std::ve
 }
 
 // EPnP over the correspondences within the threshold; the given pose where it does not gain any.
-Pose overConsensus(const Pose& pose, const Points& points, const Points& bearings,
-                   const std::vector<std::size_t>& usable, double threshold) {
-  const std::vector<std::size_t> inliers = within(pose, points, bearings, usable, threshold);
+Pose overConsensus(const Pose& pose, const Points& points, const Points& bearings, const Indices& usable,
+                   double threshold) {
+  const Indices inliers = within(pose, points, bearings, usable, threshold);
   if (inliers.size() < kLeastPoints) return pose;
   const Normalized consensus = normalized(points, bearings, inliers);
   cv::Mat rotation_vector, translation;
   cv::solvePnP(consensus.points, consensus.pixels, cv::Matx33d::eye(), cv::noArray(), rotation_vector, translation,
                false, cv::SOLVEPNP_EPNP);
   const Pose candidate = poseOf(rotation_vector, translation);
-  return within(candidate, points, bearings, usable, threshold).size() >= inliers.size() ? candidate : pose;
+  return countWithin(candidate, points, bearings, usable, threshold) >= inliers.size() ? candidate : pose;
 }
 
 // Normal equations of the errors [rad] of the bearings, across each, with Tukey's weights of width `width` [rad].
@@ -128,8 +137,8 @@ struct BearingSystem {
   double cost = 0;
 };
 
-BearingSystem bearingSystem(const Pose& pose, const Points& points, const Points& bearings,
-                            const std::vector<std::size_t>& among, double width) {
+BearingSystem bearingSystem(const Pose& pose, const Points& points, const Points& bearings, const Indices& among,
+                            double width) {
   BearingSystem system;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   for (const std::size_t i : among) {
@@ -152,8 +161,7 @@ BearingSystem bearingSystem(const Pose& pose, const Points& points, const Points
 }
 
 // Levenberg-Marquardt on the bearings themselves, which unlike the normalized plane weighs all directions alike.
-Pose refine(Pose pose, const Points& points, const Points& bearings, const std::vector<std::size_t>& among,
-            double width) {
+Pose refine(Pose pose, const Points& points, const Points& bearings, const Indices& among, double width) {
   double damping = 1e-6;
   BearingSystem system = bearingSystem(pose, points, bearings, among, width);
   for (int iteration = 0; iteration < kRefinements; ++iteration) {
@@ -174,14 +182,16 @@ Pose refine(Pose pose, const Points& points, const Points& bearings, const std::
   return pose;
 }
 
-}  // namespace
+enum class Consensus { as_sampled, by_epnp };
 
-ResectioningResult resection(const Points& points, const Points& bearings, double threshold, std::uint64_t seed,
-                             int iterations) {
+ResectioningResult resectionFrom(Consensus consensus, const Points& points, const Points& bearings, double threshold,
+                                 std::uint64_t seed, int iterations, std::pmr::memory_resource* memory) {
   assert(points.size() == bearings.size());
-  ResectioningResult result;
+  ResectioningResult result(memory);
   result.inliers.assign(points.size(), 0);
-  std::vector<std::size_t> finite, usable;
+  Indices finite(memory), usable(memory);
+  finite.reserve(points.size());
+  usable.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite() || !bearings[i].allFinite()) continue;
     finite.push_back(i);
@@ -189,14 +199,27 @@ ResectioningResult resection(const Points& points, const Points& bearings, doubl
   }
   if (usable.size() < kLeastPoints || !spanPlane(points, usable)) return result;
 
-  const Pose consensus = sampleConsensus(points, bearings, usable, threshold, seed, iterations);
-  result.camera_T_world =
-      refine(overConsensus(consensus, points, bearings, usable, threshold), points, bearings, finite, 2 * threshold);
-  const std::vector<std::size_t> inliers = within(result.camera_T_world, points, bearings, finite, threshold);
+  Pose pose = sampleConsensus(points, bearings, usable, threshold, seed, iterations);
+  if (consensus == Consensus::by_epnp) pose = overConsensus(pose, points, bearings, usable, threshold);
+  result.camera_T_world = refine(pose, points, bearings, finite, 2 * threshold);
+  const Indices inliers = within(result.camera_T_world, points, bearings, finite, threshold);
   for (const std::size_t i : inliers) result.inliers[i] = 1;
   result.inlier_count = static_cast<int>(inliers.size());
   result.found = inliers.size() >= kLeastPoints && spanPlane(points, inliers);
   return result;
+}
+
+}  // namespace
+
+ResectioningResult resection(const Points& points, const Points& bearings, double threshold, std::uint64_t seed,
+                             int iterations) {
+  return resectionFrom(Consensus::by_epnp, points, bearings, threshold, seed, iterations,
+                       std::pmr::get_default_resource());
+}
+
+ResectioningResult resectionBySamples(const Points& points, const Points& bearings, double threshold,
+                                      std::uint64_t seed, int iterations, std::pmr::memory_resource* memory) {
+  return resectionFrom(Consensus::as_sampled, points, bearings, threshold, seed, iterations, memory);
 }
 
 }  // namespace edgeslam

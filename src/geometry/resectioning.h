@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory_resource>
 #include <vector>
 
 #include "geometry/camera.h"
@@ -9,17 +10,25 @@
 
 namespace edgeslam {
 
+using Vectors3 = std::pmr::vector<Eigen::Vector3d>;
+
 struct ResectioningResult {
+  explicit ResectioningResult(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : inliers(memory) {}
+
   bool found = false;
   Pose camera_T_world;
-  std::vector<char> inliers;
+  std::pmr::vector<char> inliers;
   int inlier_count = 0;
 };
 
 // `points` in the world frame, `bearings` unit in the camera frame, same size; `threshold` [rad] for an inlier;
 // `iterations` bounds RANSAC's. Same seed, same result. Not found: fewer than 6 correspondences or inliers, or inliers
 // all on one line.
-ResectioningResult resection(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector3d>& bearings,
-                             double threshold, std::uint64_t seed, int iterations = 200);
+ResectioningResult resection(const Vectors3& points, const Vectors3& bearings, double threshold, std::uint64_t seed,
+                             int iterations = 200);
+
+// The same without EPnP: least squares from the best sample's pose. Takes all memory from `memory`.
+ResectioningResult resectionBySamples(const Vectors3& points, const Vectors3& bearings, double threshold,
+                                      std::uint64_t seed, int iterations, std::pmr::memory_resource* memory);
 
 }  // namespace edgeslam

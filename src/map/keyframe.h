@@ -41,7 +41,7 @@ struct TrackedFrame {
   std::vector<PointObservation> observations;
   std::shared_ptr<const FrameImages> images;
   KeyframeId keyframe = -1;  // its number, or -1 for a frame that only helps the initialisation
-  std::string reason;        // which criterion made it a keyframe
+  const char* reason = "";   // which criterion made it a keyframe
 };
 
 struct Keyframe {

@@ -2,8 +2,26 @@
 
 namespace edgeslam {
 
+void reserveForTracking(MapView& view) {
+  constexpr std::size_t most_new_keyframes = 64, most_points_of_a_start = 1024, longest_text = 128;
+  view.keyframes.reserve(view.keyframes.size() + most_new_keyframes);
+  if (!view.initialised) {
+    view.points.reserve(most_points_of_a_start);
+    view.waiting_for.reserve(longest_text);
+  }
+}
+
 MapView flatView(const TrackedFrame& first) {
   MapView view;
+  makeFlatView(first, view);
+  return view;
+}
+
+void makeFlatView(const TrackedFrame& first, MapView& view) {
+  view.version = 0;
+  view.initialised = false;
+  view.keyframes.clear();
+  view.points.clear();
   view.origin_frame = first.frame_index;
   view.waiting_for = "motion of the camera";
   view.keyframes.push_back(ViewKeyframe());
@@ -15,7 +33,6 @@ MapView flatView(const TrackedFrame& first) {
     point.inverse_depth_sigma = flat_start_sigma;
     view.points.push_back(point);
   }
-  return view;
 }
 
 }  // namespace edgeslam

@@ -43,6 +43,28 @@ inline const ViewPoint* findPoint(const MapView& view, PointId id) {
   return found != view.points.end() && found->id == id ? &*found : nullptr;
 }
 
+// Finds points whose numbers ascend from call to call, each from where the last one was.
+class AscendingPoints {
+ public:
+  explicit AscendingPoints(const MapView& view) : at_(view.points.data()), end_(at_ + view.points.size()) {}
+
+  // The point, or null. Never ask for a number below the one before.
+  const ViewPoint* find(PointId id) {
+    std::ptrdiff_t stride = 1;
+    while (stride < end_ - at_ && at_[stride].id < id) {
+      at_ += stride;
+      stride *= 2;
+    }
+    at_ = std::lower_bound(at_, at_ + std::min(stride + 1, end_ - at_), id,
+                           [](const ViewPoint& point, PointId wanted) { return point.id < wanted; });
+    return at_ != end_ && at_->id == id ? at_ : nullptr;
+  }
+
+ private:
+  const ViewPoint* at_;
+  const ViewPoint* end_;
+};
+
 inline Eigen::Vector3d worldPosition(const MapView& view, const ViewPoint& point) {
   return view.keyframes[point.host].world_T_camera * (point.host_bearing / point.inverse_depth);
 }
@@ -53,5 +75,10 @@ constexpr double flat_start_sigma = 0.05;
 
 // A provisional map: every point of the first frame at the distance 1 (design, section 5: initialisation).
 MapView flatView(const TrackedFrame& first);
+
+// Gives a view memory for what tracking adds to it until the next one comes: keyframes, or the points of a new start.
+void reserveForTracking(MapView& view);
+// The same into a view that was used before, with its memory.
+void makeFlatView(const TrackedFrame& first, MapView& view);
 
 }  // namespace edgeslam

@@ -72,7 +72,7 @@ InitialStructure Initialisation::fivePointStart() const {
   }();
   structure.frames = chooseFrames();
   for (const std::size_t frame : structure.frames) {
-    std::vector<PoseObservation> observations;
+    PoseObservations observations;
     forEachCommon(first_, frames_[frame], [&](std::size_t i, std::size_t j) {
       PoseObservation observation;
       observation.point = first_.observations[i].bearing / structure.inverse_depths[i];

@@ -228,7 +228,7 @@ Map Initialisation::map() const {
 }
 
 std::optional<Pose> Initialisation::locate(const TrackedFrame& frame, const Pose& near) const {
-  std::vector<PoseObservation> observations;
+  PoseObservations observations;
   forEachCommon(first_, frame, [&](std::size_t i, std::size_t j) {
     if (accepted_.inverse_depths[i] <= 0) return;
     PoseObservation observation;

@@ -106,6 +106,7 @@ MapView Mapper::view(KeyframeId centre) const {
   view.initialised = initialised_;
   view.version = version_;
   view.origin_frame = origin_frame_;
+  reserveForTracking(view);
   return view;
 }
 

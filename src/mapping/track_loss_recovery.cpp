@@ -69,9 +69,9 @@ double medianParallax(const std::vector<Track3>& tracks, const LocalStructure& l
   return medianOf(std::move(angles));
 }
 
-std::vector<PoseObservation> observationsInFirst(const std::vector<Track3>& tracks, const LocalStructure& local,
+PoseObservations observationsInFirst(const std::vector<Track3>& tracks, const LocalStructure& local,
                                                  const std::vector<char>& taken) {
-  std::vector<PoseObservation> observations;
+  PoseObservations observations;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!taken[i]) continue;
     PoseObservation observation;
@@ -113,7 +113,7 @@ void triangulateTracks(const Camera& camera, const std::vector<Track3>& tracks, 
 // t-2 in L, by EPnP, and by least squares on the edges' measurements; from its known rotation where EPnP finds nothing.
 bool resectionFirst(const Camera& camera, const std::vector<Track3>& tracks, const Pose& known_middle_T_first,
                     const RecoveryOptions& options, LocalStructure& local) {
-  std::vector<Eigen::Vector3d> points, bearings;
+  Vectors3 points, bearings;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!local.inliers[i]) continue;
     points.emplace_back(tracks[i].middle->bearing / local.inverse_depths[i]);
@@ -121,7 +121,7 @@ bool resectionFirst(const Camera& camera, const std::vector<Track3>& tracks, con
   }
   const ResectioningResult resectioned =
       resection(points, bearings, options.resectioning_error / meanFocalLength(camera), /*seed=*/1);
-  const std::vector<PoseObservation> observations = observationsInFirst(tracks, local, local.inliers);
+  const PoseObservations observations = observationsInFirst(tracks, local, local.inliers);
   const Pose only_turned{known_middle_T_first.rotation, Eigen::Vector3d::Zero()};
   PoseResult best = adjustPose(camera, only_turned, observations, PoseOptions());
   if (resectioned.found) {
@@ -250,7 +250,7 @@ double scaleSigma(const Camera& camera, const std::vector<Track3>& tracks, const
 // Of the pose of t: from its own measurements of the points, and from the scale.
 Matrix6d covarianceOfLast(const Camera& camera, const std::vector<Track3>& tracks, const LocalStructure& local,
                           const RecoveryResult& result, const Pose& world_T_middle, double scale_sigma) {
-  std::vector<PoseObservation> observations;
+  PoseObservations observations;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!local.inliers[i]) continue;
     PoseObservation observation;

@@ -17,6 +17,12 @@ class Channel {
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
 
+  // Before the first entry: gives the slots their memory.
+  template <typename Prepare>
+  void forEachSlot(const Prepare& prepare) {
+    for (Entry& slot : slots_) prepare(slot);
+  }
+
   // The sender's side: a slot to fill, as it was when it was last used; null where the queue is full. Claim again only
   // after it was sent.
   Entry* claim() {

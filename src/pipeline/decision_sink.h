@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <opencv2/core/mat.hpp>
+#include <memory>
 #include <string>
+
+#include "map/keyframe.h"
 
 namespace edgeslam {
 
@@ -16,8 +18,7 @@ class DecisionSink {
   // Before message `message` was handled, mapping applied correction `number`.
   virtual void appliedCorrection(std::int64_t message, std::int64_t number) noexcept = 0;
   virtual void passedOver(std::int64_t index, std::int64_t time_ns) noexcept = 0;
-  // `grey` is shared and never changed again.
-  virtual void processed(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) noexcept = 0;
+  virtual void processed(const std::shared_ptr<const FrameImages>& images) noexcept = 0;
   virtual void unreadable(std::int64_t index, std::int64_t time_ns, const std::string& problem) noexcept = 0;
 };
 

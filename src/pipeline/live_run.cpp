@@ -9,7 +9,7 @@ namespace edgeslam {
 namespace {
 
 constexpr auto idle_time = std::chrono::milliseconds(1);
-constexpr std::size_t most_messages_of_a_frame = 3;
+constexpr std::size_t longest_reason = 256;
 
 std::int64_t steadyNow_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
@@ -35,6 +35,16 @@ LiveRun::LiveRun(const Camera& camera, const Settings& settings, const LiveOptio
       frames_(camera.width, camera.height) {
   sem_init(&frame_ready_, 0, 0);
   sem_init(&result_ready_, 0, 0);
+  messages_.forEachSlot([&](MappingMessage& message) {
+    message.frame.observations.reserve(static_cast<std::size_t>(settings.tracking.points.count));
+  });
+  for (MappingMessage& message : new_messages_.all()) {
+    message.frame.observations.reserve(static_cast<std::size_t>(settings.tracking.points.count));
+  }
+  results_.forEachSlot([](Published& published) {
+    published.result.reason.reserve(longest_reason);
+    published.problem.reserve(longest_reason);
+  });
 }
 
 LiveRun::~LiveRun() {
@@ -113,7 +123,7 @@ void LiveRun::trackFrame(FrameSlot& slot) {
     passed_over_.fetch_add(1, std::memory_order_relaxed);
     if (sink_) sink_->passedOver(passed_over.index, passed_over.time_ns);
   }
-  if (messages_.room() < most_messages_of_a_frame) {
+  if (messages_.room() < FrameMessages::most) {
     passed_over_.fetch_add(1, std::memory_order_relaxed);
     mapping_behind_.fetch_add(1, std::memory_order_relaxed);
     if (sink_) sink_->passedOver(slot.index, slot.time_ns);
@@ -121,11 +131,12 @@ void LiveRun::trackFrame(FrameSlot& slot) {
   }
   takeUpdate(slot.index);
   new_messages_.clear();
-  FrameResult result = slot.problem.empty() ? tracking_.process(slot.index, slot.time_ns, slot.grey, new_messages_)
-                                            : tracking_.skip(slot.index, slot.time_ns, slot.problem);
-  result.latency_ms = static_cast<double>(steadyNow_ns() - slot.handed_over_ns) * 1e-6;
+  const FrameResult& result = slot.problem.empty()
+                                  ? tracking_.process(slot.index, slot.time_ns, slot.grey, new_messages_)
+                                  : tracking_.skip(slot.index, slot.time_ns, slot.problem);
   if (Published* published = results_.claim()) {
-    published->result = std::move(result);
+    published->result = result;
+    published->result.latency_ms = static_cast<double>(steadyNow_ns() - slot.handed_over_ns) * 1e-6;
     published->problem = slot.problem;
     results_.send(published);
     sem_post(&result_ready_);
@@ -134,10 +145,10 @@ void LiveRun::trackFrame(FrameSlot& slot) {
   }
   for (MappingMessage& message : new_messages_) {
     MappingMessage* sent = messages_.claim();
-    *sent = std::move(message);
+    std::swap(*sent, message);
     messages_.send(sent);
   }
-  if (sink_ && slot.problem.empty()) sink_->processed(slot.index, slot.time_ns, tracking_.grey());
+  if (sink_ && slot.problem.empty()) sink_->processed(tracking_.images());
   if (sink_ && !slot.problem.empty()) sink_->unreadable(slot.index, slot.time_ns, slot.problem);
   processed_.fetch_add(1, std::memory_order_relaxed);
 }
@@ -181,8 +192,10 @@ bool LiveRun::mapOnce() {
     --with_places_;
   } else if (MappingMessage* message = messages_.receive()) {
     publishUpdate(mapping_.handle(*message));
-    *message = MappingMessage();
+    message->frame.images.reset();
+    message->edges.reset();
     messages_.release(message);
+    tracking_.prepareImages();
     handSnapshot();
   } else {
     return false;

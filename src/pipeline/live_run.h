@@ -114,7 +114,7 @@ class LiveRun {
   Channel<MappingReport> reports_{256};                 // mapping to publishing
   sem_t frame_ready_, result_ready_;
 
-  std::vector<MappingMessage> new_messages_;  // tracking's alone
+  FrameMessages new_messages_;  // tracking's alone
   std::atomic<Stopping> stopping_{Stopping::no};
   std::atomic<bool> tracking_ended_{false}, mapping_ended_{false};
   std::int64_t with_places_ = 0;  // snapshots whose corrections mapping has not received yet; mapping's alone

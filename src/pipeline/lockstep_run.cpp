@@ -41,7 +41,7 @@ const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns
   messages_.clear();
   FrameRecord& frame = record_.add(tracking_.process(index, time_ns, grey, messages_), /*unreadable=*/false);
   const auto start = std::chrono::steady_clock::now();
-  for (const MappingMessage& message : messages_) hand(message);
+  for (MappingMessage& message : messages_) hand(message);
   frame.times.add(Stage::mapping, millisecondsSince(start));
   for (MappingReport& report : mapping_.takeReports()) record_.add(std::move(report));
   if (drawing_interval_ > 0 && processed_ % drawing_interval_ == 0) draw(grey, frame);
@@ -70,7 +70,7 @@ bool LockstepRun::isDue(const DueUpdate& update, std::int64_t frame_index) const
   return taken != recorded_->updates.end() && update.update.number <= taken->second;
 }
 
-void LockstepRun::hand(const MappingMessage& message) {
+void LockstepRun::hand(MappingMessage& message) {
   if (!recorded_ && !message.lost) applyDueCorrections(keyframes_ + 1);
   remember(mapping_.handle(message));
   if (mapping_.hasNewKeyframe()) {

@@ -46,7 +46,7 @@ class LockstepRun {
 
   void takeDueUpdate(std::int64_t frame_index);
   bool isDue(const DueUpdate& update, std::int64_t frame_index) const;
-  void hand(const MappingMessage& message);
+  void hand(MappingMessage& message);
   bool isWanted(const Snapshot& snapshot) const;
   void applyDueCorrections(std::int64_t keyframes);
   void applyRecordedCorrections(std::int64_t message);
@@ -59,7 +59,7 @@ class LockstepRun {
   MappingWorker mapping_;
   PlacesWorker places_;
   RunRecord record_;
-  std::vector<MappingMessage> messages_;  // of the current frame
+  FrameMessages messages_;  // of the current frame
   std::deque<DueUpdate> updates_;
   std::deque<DueSnapshot> snapshots_;
   std::int64_t processed_ = 0;  // frames

@@ -53,7 +53,7 @@ void MappingWorker::relocalise(const MappingMessage& message) {
   // What looks like a place out of reach is another place that looks the same.
   std::optional<Reachable> reachable;
   if (message.last_good_pose) reachable = reachableFrom(map, *message.last_good_pose, message.seconds_since);
-  const RelocalisationResult result = relocalisation_.relocalise(map, *message.frame.images, message.edges, reachable);
+  const RelocalisationResult result = relocalisation_.relocalise(map, *message.frame.images, *message.edges, reachable);
   not_found_ = result.reason;
   if (!result.found) return;
   std::vector<FoundAgain> points;

@@ -2,6 +2,7 @@
 // are made. Each of the three is a pure function of what it was handed, in that order.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,10 +22,27 @@ struct MappingMessage {
   TrackedFrame frame;       // of a lost frame: its tracks, without a pose, and the number it gets if it is recovered
   bool lost = false;
   // Of a lost frame:
-  EdgeMap edges;
+  std::shared_ptr<const EdgeMap> edges;
   std::optional<Pose> last_good_pose;  // none before the first
   double seconds_since = 0;            // the last good pose
   bool recover = false;                // its tracks run through the last keyframes: P21 before P22
+};
+
+// The messages of one frame; their memory is used again for those of the next.
+class FrameMessages {
+ public:
+  // Another message, as it was left.
+  MappingMessage& add() { return messages_.at(count_++); }
+  void clear() { count_ = 0; }
+  // All there can be, to give them their memory.
+  std::array<MappingMessage, 2>& all() { return messages_; }
+  MappingMessage* begin() { return messages_.data(); }
+  MappingMessage* end() { return messages_.data() + count_; }
+  static constexpr std::size_t most = 2;  // the frame itself, and that it is looked for
+
+ private:
+  std::array<MappingMessage, most> messages_;
+  std::size_t count_ = 0;
 };
 
 // A lost frame was found again.

@@ -5,6 +5,7 @@
 namespace edgeslam {
 namespace {
 
+constexpr std::size_t longest_reason = 256;
 constexpr int frames_with_tracks = 10;  // after a loss: later, hardly a track runs through the last keyframes (P21)
 
 TrackingState stateOf(FrameState state) {
@@ -21,28 +22,16 @@ TrackingState stateOf(FrameState state) {
   return TrackingState::lost;
 }
 
-FrameResult resultOf(std::int64_t index, std::int64_t time_ns, TrackingOutcome outcome) {
-  FrameResult result;
-  result.index = index;
-  result.time_ns = time_ns;
-  result.state = stateOf(outcome.state);
-  result.reason = std::move(outcome.reason);
-  result.has_pose = outcome.state == FrameState::tracking || outcome.state == FrameState::predicted;
-  result.world_T_camera = outcome.world_T_camera;
-  result.covariance = outcome.covariance;
-  if (outcome.state == FrameState::tracking) {
-    result.reference = outcome.reference;
-    result.reference_T_camera = outcome.reference_T_camera;
-  }
-  result.tracked_points = outcome.tracked_points;
-  result.mapped_points = outcome.mapped_points;
-  result.times = outcome.times;
-  return result;
-}
-
 }  // namespace
 
-void TrackingWorker::take(const MapUpdate& update) {
+TrackingWorker::TrackingWorker(const Camera& camera, const Settings& settings)
+    : relocalise_(settings.relocalisation_enabled || settings.mapping.recovery_enabled),
+      tracker_(camera, settings.tracking) {
+  for (std::string* text : {&outcome_.reason, &result_.reason, &not_found_}) text->reserve(longest_reason);
+  outcome_.for_mapping.observations.reserve(static_cast<std::size_t>(settings.tracking.points.count));
+}
+
+void TrackingWorker::take(MapUpdate& update) {
   const bool answered = asked_ >= 0 && update.answers >= asked_;
   if (answered && update.found && update.found->frame_index == asked_frame_) {
     tracker_.resume(update.view, update.found->world_T_camera, update.found->covariance, update.found->points);
@@ -56,19 +45,16 @@ void TrackingWorker::take(const MapUpdate& update) {
   }
 }
 
-FrameResult TrackingWorker::process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey,
-                                    std::vector<MappingMessage>& messages) {
-  TrackingOutcome outcome = tracker_.track(index, time_ns, grey);
-  for (TrackedFrame& frame : outcome.for_mapping) {
-    MappingMessage& message = messages.emplace_back();
-    message.number = next_message_++;
-    message.frame = std::move(frame);
-  }
-  FrameResult result = resultOf(index, time_ns, std::move(outcome));
+const FrameResult& TrackingWorker::process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey,
+                                           FrameMessages& messages) {
+  tracker_.track(index, time_ns, grey, outcome_);
+  if (outcome_.tells_mapping) std::swap(nextMessage(messages).frame, outcome_.for_mapping);
+  makeResult(index, time_ns);
+  FrameResult& result = result_;
   if (result.state == TrackingState::lost) {
     ++lost_frames_;
-    if (!not_found_.empty()) result.reason = "not found again in the map: " + not_found_;
-    if (relocalise_ && asked_ < 0 && tracker_.hasLostFrame()) askWhere(time_ns, messages.emplace_back());
+    if (!not_found_.empty()) result.reason.assign("not found again in the map: ").append(not_found_);
+    if (relocalise_ && asked_ < 0 && tracker_.hasLostFrame()) askWhere(time_ns, nextMessage(messages));
   }
   if (result.state == TrackingState::tracking) {
     lost_frames_ = 0;
@@ -82,9 +68,20 @@ FrameResult TrackingWorker::process(std::int64_t index, std::int64_t time_ns, co
   return result;
 }
 
+// As made anew, but with its memory.
+MappingMessage& TrackingWorker::nextMessage(FrameMessages& messages) {
+  MappingMessage& message = messages.add();
+  message.number = next_message_++;
+  message.lost = message.recover = false;
+  message.edges.reset();
+  message.last_good_pose.reset();
+  message.seconds_since = 0;
+  return message;
+}
+
 void TrackingWorker::askWhere(std::int64_t time_ns, MappingMessage& message) {
-  message.number = asked_ = next_message_++;
-  message.frame = tracker_.keepLostFrame();
+  asked_ = message.number;
+  tracker_.keepLostFrame(message.frame);
   message.lost = true;
   message.edges = tracker_.keptEdges();
   message.last_good_pose = last_good_pose_;
@@ -93,8 +90,26 @@ void TrackingWorker::askWhere(std::int64_t time_ns, MappingMessage& message) {
   asked_frame_ = message.frame.frame_index;
 }
 
-FrameResult TrackingWorker::skip(std::int64_t index, std::int64_t time_ns, const std::string& problem) const {
-  return resultOf(index, time_ns, tracker_.skip(time_ns, problem));
+const FrameResult& TrackingWorker::skip(std::int64_t index, std::int64_t time_ns, const std::string& problem) {
+  tracker_.skip(time_ns, problem, outcome_);
+  return makeResult(index, time_ns);
+}
+
+const FrameResult& TrackingWorker::makeResult(std::int64_t index, std::int64_t time_ns) {
+  result_.index = index;
+  result_.time_ns = time_ns;
+  result_.state = stateOf(outcome_.state);
+  result_.reason = outcome_.reason;
+  result_.has_pose = outcome_.state == FrameState::tracking || outcome_.state == FrameState::predicted;
+  result_.world_T_camera = outcome_.world_T_camera;
+  result_.covariance = outcome_.covariance;
+  const bool carried = outcome_.state == FrameState::tracking;
+  result_.reference = carried ? outcome_.reference : -1;
+  result_.reference_T_camera = carried ? outcome_.reference_T_camera : Pose();
+  result_.tracked_points = outcome_.tracked_points;
+  result_.mapped_points = outcome_.mapped_points;
+  result_.times = outcome_.times;
+  return result_;
 }
 
 }  // namespace edgeslam

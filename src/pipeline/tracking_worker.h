@@ -13,33 +13,40 @@ namespace edgeslam {
 
 class TrackingWorker {
  public:
-  TrackingWorker(const Camera& camera, const Settings& settings)
-      : relocalise_(settings.relocalisation_enabled || settings.mapping.recovery_enabled),
-        tracker_(camera, settings.tracking) {}
+  TrackingWorker(const Camera& camera, const Settings& settings);
 
   // Before the first frame: there is a map already, and the camera somewhere in it.
   void goOnWith(const MapView& view, PointId first_free_point) { tracker_.startLost(view, first_free_point); }
 
-  // Between two frames.
-  void take(const MapUpdate& update);
+  // Between two frames. What is left in `update` is of no use any more.
+  void take(MapUpdate& update);
 
-  // The next frame, CV_8U of the camera's size; `messages` gets what mapping is to know.
-  FrameResult process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey,
-                      std::vector<MappingMessage>& messages);
+  // The next frame, CV_8U of the camera's size; `messages` gets what mapping is to know. The result holds until the
+  // next frame. Once running, without allocation, lock or system call but reading the clock.
+  const FrameResult& process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey, FrameMessages& messages);
   // A frame that could not be read.
-  FrameResult skip(std::int64_t index, std::int64_t time_ns, const std::string& problem) const;
+  const FrameResult& skip(std::int64_t index, std::int64_t time_ns, const std::string& problem);
 
   // Of the frame processed last; shared and never changed again.
-  const cv::Mat& grey() const { return tracker_.latestImages().pyramid.levels[0]; }
+  const std::shared_ptr<const FrameImages>& images() const { return tracker_.latestImages(); }
+
+  // For another thread, after each keyframe: images for the frames to come.
+  void prepareImages() { tracker_.prepareImages(images_ready); }
 
   // For drawings.
   const Tracker& tracker() const { return tracker_; }
 
  private:
+  static constexpr int images_ready = 12;
+
+  MappingMessage& nextMessage(FrameMessages& messages);
   void askWhere(std::int64_t time_ns, MappingMessage& message);
+  const FrameResult& makeResult(std::int64_t index, std::int64_t time_ns);
 
   bool relocalise_ = true;
   Tracker tracker_;
+  TrackingOutcome outcome_;
+  FrameResult result_;
   std::int64_t next_message_ = 0;
   std::int64_t asked_ = -1;             // number of the message with a lost frame that is not answered yet, or -1
   std::int64_t asked_frame_ = -1;       // its frame, or -1 where tracking went on by itself since

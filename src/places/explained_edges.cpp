@@ -9,7 +9,7 @@ namespace {
 // The map's points in view, by square cells of the image as large as the distance that matters.
 class Cells {
  public:
-  Cells(const cv::Size& size, double side, const std::vector<VisiblePoint>& visible)
+  Cells(const cv::Size& size, double side, const VisiblePoints& visible)
       : side_(static_cast<float>(std::max(1.0, side))),
         columns_(indexOf(static_cast<float>(size.width)) + 1),
         rows_(indexOf(static_cast<float>(size.height)) + 1),
@@ -48,7 +48,7 @@ class Cells {
 
 }  // namespace
 
-double explainedShare(const EdgeMap& edges, const std::vector<VisiblePoint>& visible,
+double explainedShare(const EdgeMap& edges, const VisiblePoints& visible,
                       const ExplainedEdgesOptions& options) {
   if (edges.points.empty()) return 0;
   const Cells cells(edges.index.size(), options.distance, visible);

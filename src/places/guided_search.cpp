@@ -44,13 +44,12 @@ void addDepthUncertainty(const Camera& camera, const Map& map, const MapPoint& p
 }
 
 // At most `count` of the points, corners before edges, evenly from the list.
-std::vector<VisiblePoint> thinOut(const std::vector<SearchPoint>& points, const std::vector<VisiblePoint>& visible,
-                                  int count) {
+VisiblePoints thinOut(const SearchPoints& points, const VisiblePoints& visible, int count) {
   if (static_cast<int>(visible.size()) <= count) return visible;
-  std::vector<VisiblePoint> corners, others, chosen;
+  VisiblePoints corners, others, chosen;
   for (const VisiblePoint& candidate : visible)
     (points[candidate.index].corner ? corners : others).push_back(candidate);
-  const auto takeEvenly = [&](const std::vector<VisiblePoint>& from, std::size_t wanted) {
+  const auto takeEvenly = [&](const VisiblePoints& from, std::size_t wanted) {
     wanted = std::min(wanted, from.size());
     for (std::size_t i = 0; i < wanted; ++i) chosen.push_back(from[i * from.size() / wanted]);
   };
@@ -74,15 +73,14 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
   search.radius = round.radius;
   search.coarsest_level = round.coarsest_level;
   std::vector<KeyframeId> keyframes;
-  const std::vector<SearchPoint> points = searchPoints(map, ids, start, keyframes);
-  const std::vector<VisiblePoint> visible =
-      thinOut(points, visiblePoints(camera, points, start, search), round.most_points);
+  const SearchPoints points = searchPoints(map, ids, start, keyframes);
+  const VisiblePoints visible = thinOut(points, visiblePoints(camera, points, start, search), round.most_points);
 
   RoundResult result;
   result.visible = static_cast<int>(visible.size());
   for (const VisiblePoint& candidate : visible) result.visible_corners += points[candidate.index].corner ? 1 : 0;
   const Pose camera_T_world = start.inverse();
-  std::vector<PoseObservation> observations;
+  PoseObservations observations;
   for (const FoundPoint& found : findVisiblePoints(points, visible, current, edges, search)) {
     const SearchPoint& point = points[found.index];
     const Track seen = accuracyAt(current.pyramid.levels[0], options.accuracy, found);
@@ -190,9 +188,9 @@ std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neigh
   return points;
 }
 
-std::vector<SearchPoint> searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
-                                      std::vector<KeyframeId>& keyframes) {
-  std::vector<SearchPoint> result;
+SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
+                          std::vector<KeyframeId>& keyframes) {
+  SearchPoints result;
   keyframes.clear();
   for (const PointId id : points) {
     const MapPoint& point = map.points.at(id);
@@ -214,7 +212,7 @@ std::vector<SearchPoint> searchPoints(const Map& map, const std::vector<PointId>
     const PointObservation* seen = nearest ? findObservation(*nearest, id) : nullptr;
     if (!seen) continue;
     const Measurement& m = seen->measurement;
-    result.push_back({id, position, nearest->images, nearest->world_T_camera, m.pixel.cast<float>(),
+    result.push_back({id, position, nearest->images.get(), nearest->world_T_camera, m.pixel.cast<float>(),
                       m.normal.cast<float>(), seen->corner, static_cast<float>(m.sigma_normal),
                       static_cast<float>(m.sigma_tangent)});
     keyframes.push_back(nearest->id);
@@ -259,7 +257,7 @@ GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std:
   evidence.position_sigma = largestSigma(last.pose.covariance.topLeftCorner<3, 3>()) / evidence.median_distance;
   std::vector<KeyframeId> keyframes;
   const Pose& pose = last.pose.world_T_camera;
-  const std::vector<SearchPoint> around = searchPoints(map, points, pose, keyframes);
+  const SearchPoints around = searchPoints(map, points, pose, keyframes);
   evidence.explained =
       explainedShare(edges, visiblePoints(camera, around, pose, options.search), options.explained_edges);
   evidence.rotation_sigma_deg = largestSigma(last.pose.covariance.bottomRightCorner<3, 3>()) * 180 / M_PI;

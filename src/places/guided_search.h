@@ -74,8 +74,8 @@ std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neigh
 
 // The points with, of each, the keyframe that saw it most nearly from where `world_T_camera` does. `keyframes` gets
 // these, one a point.
-std::vector<SearchPoint> searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
-                                      std::vector<KeyframeId>& keyframes);
+SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
+                          std::vector<KeyframeId>& keyframes);
 
 // A first look from a rough pose at some of the points: the pose adjusted to them and what speaks for it.
 struct ScreenedPose {

@@ -111,7 +111,7 @@ std::vector<Relocalisation::Candidate> Relocalisation::differentPlaces(const Map
 std::optional<Pose> Relocalisation::poseByDescriptors(const Map& map, KeyframeId keyframe,
                                                       const DescribedPoints& frame) const {
   const KnownKeyframe& known = keyframes_.at(keyframe);
-  std::vector<Eigen::Vector3d> points, bearings;
+  Vectors3 points, bearings;
   for (const auto& [mine, its] : matchDescriptors(frame, known.described, options_.matching)) {
     const auto point = map.points.find(known.points[static_cast<std::size_t>(its)]);
     if (point == map.points.end()) continue;

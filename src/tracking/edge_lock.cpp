@@ -8,9 +8,10 @@ void lockAlongEdges(const Camera& camera, const MapView& view, const Pose& world
                     const EdgeLockOptions& options, std::vector<Track>& tracks) {
   if (!options.enabled) return;
   const Pose camera_T_world = world_T_camera.inverse();
+  AscendingPoints points(view);
   for (Track& track : tracks) {
     if (track.corner || track.sigma_normal >= options.straightness * track.sigma_tangent) continue;
-    const ViewPoint* point = findPoint(view, track.id);
+    const ViewPoint* point = points.find(track.id);
     if (!point) continue;
     const Eigen::Vector3d in_camera = camera_T_world * worldPosition(view, *point);
     if (in_camera.z() <= 0) continue;

@@ -11,7 +11,7 @@ SearchPoint searchPointOf(const MapView& view, const ViewPoint& point) {
   SearchPoint search;
   search.id = point.id;
   search.position = worldPosition(view, point);
-  search.source_images = source.images;
+  search.source_images = source.images.get();
   search.world_T_source = source.world_T_camera;
   search.source_pixel = point.source_measurement.pixel.cast<float>();
   search.source_normal = point.source_measurement.normal.cast<float>();
@@ -28,11 +28,12 @@ bool nearTrack(const std::vector<Track>& tracks, const Eigen::Vector2f& pixel, f
 
 }  // namespace
 
-void reuseMapPoints(const Camera& camera, const MapView& view, const std::shared_ptr<const FrameImages>& images,
-                    const EdgeMap& edges, const Pose& world_T_camera, std::size_t most, const MapReuseOptions& options,
-                    std::vector<Track>& tracks) {
+void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages& images, const EdgeMap& edges,
+                    const Pose& world_T_camera, std::size_t most, const MapReuseOptions& options,
+                    std::vector<Track>& tracks, std::pmr::memory_resource* memory) {
   if (!options.enabled) return;
-  std::vector<SearchPoint> points;
+  SearchPoints points(memory);
+  points.reserve(view.points.size());
   std::size_t t = 0;
   for (const ViewPoint& point : view.points) {
     while (t < tracks.size() && tracks[t].id < point.id) ++t;
@@ -41,7 +42,8 @@ void reuseMapPoints(const Camera& camera, const MapView& view, const std::shared
   }
   const Pose camera_T_world = world_T_camera.inverse();
   const auto by_id = [](const Track& a, const Track& b) { return a.id < b.id; };
-  for (const FoundPoint& found : searchMapPoints(camera, points, *images, edges, world_T_camera, options.search)) {
+  for (const FoundPoint& found :
+       searchMapPoints(camera, points, images, edges, world_T_camera, options.search, memory)) {
     if (tracks.size() >= most) break;
     const SearchPoint& point = points[found.index];
     const Measurement measurement = measurementOf(point, found);
@@ -57,7 +59,7 @@ void reuseMapPoints(const Camera& camera, const MapView& view, const std::shared
     track.sigma_normal = static_cast<float>(measurement.sigma_normal);
     track.sigma_tangent = static_cast<float>(measurement.sigma_tangent);
     track.keyframe = view_point.source;
-    track.keyframe_images = point.source_images;
+    track.keyframe_images = view.keyframes[view_point.source].images;
     track.keyframe_pixel = point.source_pixel;
     tracks.insert(std::upper_bound(tracks.begin(), tracks.end(), track, by_id), track);
   }

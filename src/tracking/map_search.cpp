@@ -27,12 +27,10 @@ bool templateAtLevel(const SearchPoint& point, const Eigen::Matrix2f& warp, int 
 // corners.
 Eigen::Vector2f bestStart(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& predicted,
                           const Eigen::Vector2f& normal, bool corner, int reach) {
-  AlignmentOptions look;
-  look.iterations = 1;
   Eigen::Vector2f best = predicted;
   float best_correlation = -1;
   const auto consider = [&](const Eigen::Vector2f& start) {
-    const float correlation = alignPatch(patch, image, start, start, look).correlation;
+    const float correlation = correlationAt(patch, image, start);
     if (correlation <= best_correlation) return;
     best_correlation = correlation;
     best = start;
@@ -86,12 +84,13 @@ std::optional<FoundPoint> findPatch(const SearchPoint& point, const VisiblePoint
 
 }  // namespace
 
-std::vector<VisiblePoint> visiblePoints(const Camera& camera, const std::vector<SearchPoint>& points,
-                                        const Pose& world_T_camera, const MapSearchOptions& options) {
+VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, const Pose& world_T_camera,
+                            const MapSearchOptions& options, std::pmr::memory_resource* memory) {
   const Pose camera_T_world = world_T_camera.inverse();
   const double least_cosine = std::cos(options.largest_angle_deg * M_PI / 180);
   const double largest_area = options.largest_scale * options.largest_scale;
-  std::vector<VisiblePoint> visible;
+  VisiblePoints visible(memory);
+  visible.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SearchPoint& point = points[i];
     if (!point.source_images) continue;
@@ -113,10 +112,11 @@ std::vector<VisiblePoint> visiblePoints(const Camera& camera, const std::vector<
   return visible;
 }
 
-std::vector<FoundPoint> findVisiblePoints(const std::vector<SearchPoint>& points,
-                                          const std::vector<VisiblePoint>& visible, const FrameImages& current,
-                                          const EdgeMap& edges, const MapSearchOptions& options) {
-  std::vector<FoundPoint> found;
+FoundPoints findVisiblePoints(const SearchPoints& points, const VisiblePoints& visible, const FrameImages& current,
+                              const EdgeMap& edges, const MapSearchOptions& options,
+                              std::pmr::memory_resource* memory) {
+  FoundPoints found(memory);
+  found.reserve(visible.size());
   for (const VisiblePoint& candidate : visible) {
     if (const auto match = findPatch(points[candidate.index], candidate, current, edges, options))
       found.push_back(*match);
@@ -124,10 +124,11 @@ std::vector<FoundPoint> findVisiblePoints(const std::vector<SearchPoint>& points
   return found;
 }
 
-std::vector<FoundPoint> searchMapPoints(const Camera& camera, const std::vector<SearchPoint>& points,
-                                        const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
-                                        const MapSearchOptions& options) {
-  return findVisiblePoints(points, visiblePoints(camera, points, world_T_camera, options), current, edges, options);
+FoundPoints searchMapPoints(const Camera& camera, const SearchPoints& points, const FrameImages& current,
+                            const EdgeMap& edges, const Pose& world_T_camera, const MapSearchOptions& options,
+                            std::pmr::memory_resource* memory) {
+  return findVisiblePoints(points, visiblePoints(camera, points, world_T_camera, options, memory), current, edges,
+                           options, memory);
 }
 
 Measurement measurementOf(const SearchPoint& point, const FoundPoint& found) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
+#include <memory_resource>
 #include <vector>
 
 #include "edges/edge_detection.h"
@@ -17,7 +17,7 @@ namespace edgeslam {
 struct SearchPoint {
   PointId id = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world
-  std::shared_ptr<const FrameImages> source_images;    // of the keyframe; null: the point is passed over
+  const FrameImages* source_images = nullptr;          // of the keyframe; null: the point is passed over
   Pose world_T_source;
   Eigen::Vector2f source_pixel = Eigen::Vector2f::Zero();
   Eigen::Vector2f source_normal = Eigen::Vector2f::UnitX();  // unit, from dark to bright
@@ -25,6 +25,8 @@ struct SearchPoint {
   float sigma_normal = 0.5f;  // in the keyframe [px]
   float sigma_tangent = 1000;
 };
+
+using SearchPoints = std::pmr::vector<SearchPoint>;
 
 struct MapSearchOptions {
   int window = 11;                 // side of the patch [px]
@@ -48,6 +50,8 @@ struct VisiblePoint {
   Eigen::Matrix2f warp = Eigen::Matrix2f::Identity();  // takes offsets in the frame to offsets in the keyframe's image
 };
 
+using VisiblePoints = std::pmr::vector<VisiblePoint>;
+
 struct FoundPoint {
   std::size_t index = 0;                              // into the points
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();    // [px]
@@ -55,20 +59,23 @@ struct FoundPoint {
   float correlation = 0;
 };
 
+using FoundPoints = std::pmr::vector<FoundPoint>;
+
 // The points that project inside the image, are seen from about the direction and the distance of their keyframe.
 // Whether something stands before them is not known.
-std::vector<VisiblePoint> visiblePoints(const Camera& camera, const std::vector<SearchPoint>& points,
-                                        const Pose& world_T_camera, const MapSearchOptions& options);
+VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, const Pose& world_T_camera,
+                            const MapSearchOptions& options,
+                            std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // Those of the visible points whose patch is found, on an edge of `edges`, in the order of `visible`.
-std::vector<FoundPoint> findVisiblePoints(const std::vector<SearchPoint>& points,
-                                          const std::vector<VisiblePoint>& visible, const FrameImages& current,
-                                          const EdgeMap& edges, const MapSearchOptions& options);
+FoundPoints findVisiblePoints(const SearchPoints& points, const VisiblePoints& visible, const FrameImages& current,
+                              const EdgeMap& edges, const MapSearchOptions& options,
+                              std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // Both in one. `world_T_camera` may be wrong by what moves a point by the search radius in the image.
-std::vector<FoundPoint> searchMapPoints(const Camera& camera, const std::vector<SearchPoint>& points,
-                                        const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
-                                        const MapSearchOptions& options);
+FoundPoints searchMapPoints(const Camera& camera, const SearchPoints& points, const FrameImages& current,
+                            const EdgeMap& edges, const Pose& world_T_camera, const MapSearchOptions& options,
+                            std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // What a found point measures: the accuracy that its keyframe's patch had, carried over.
 Measurement measurementOf(const SearchPoint& point, const FoundPoint& found);

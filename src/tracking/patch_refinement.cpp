@@ -9,14 +9,14 @@ namespace {
 enum class Refinement { refined, unchanged, lost };
 
 Refinement refine(const Camera& camera, const MapView& view, const FrameImages& images, const Pose& camera_T_world,
-                  double scene_depth, const RefinementOptions& options, Track& track) {
+                  double scene_depth, const RefinementOptions& options, AscendingPoints& points, Track& track) {
   const ViewKeyframe* keyframe = view.keyframes.find(track.keyframe);
   if (!track.keyframe_images || !keyframe) {
     return Refinement::unchanged;
   }
   const Pose& world_T_keyframe = keyframe->world_T_camera;
   double depth = scene_depth;
-  if (const ViewPoint* point = findPoint(view, track.id)) {
+  if (const ViewPoint* point = points.find(track.id)) {
     depth = (worldPosition(view, *point) - world_T_keyframe.translation).norm();
   }
   const Eigen::Matrix2f warp = keyframeWarp(camera, camera_T_world * world_T_keyframe, track.keyframe_pixel, depth);
@@ -59,13 +59,14 @@ void refineTracks(const Camera& camera, const MapView& view, const FrameImages& 
                   double scene_depth, const RefinementOptions& options, std::vector<Track>& tracks) {
   if (!options.enabled) return;
   const Pose camera_T_world = world_T_camera.inverse();
+  AscendingPoints points(view);
   std::size_t kept = 0;
   for (Track& track : tracks) {
-    if (refine(camera, view, images, camera_T_world, scene_depth, options, track) == Refinement::lost) continue;
+    if (refine(camera, view, images, camera_T_world, scene_depth, options, points, track) == Refinement::lost) continue;
     if (&tracks[kept] != &track) tracks[kept] = std::move(track);
     ++kept;
   }
-  tracks.resize(kept);
+  tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(kept), tracks.end());
 }
 
 }  // namespace edgeslam

@@ -9,8 +9,14 @@ namespace {
 // Marks taken pixels, to find points nearer than a distance to one that was kept.
 class Occupancy {
  public:
-  Occupancy(int width, int height, float distance)
-      : distance_(distance), columns_(width), rows_(height), cells_(static_cast<std::size_t>(width * height), -1) {}
+  Occupancy(int width, int height, float distance, std::size_t most, std::pmr::memory_resource* memory)
+      : distance_(distance),
+        columns_(width),
+        rows_(height),
+        cells_(static_cast<std::size_t>(width * height), -1, memory),
+        kept_(memory) {
+    kept_.reserve(most);
+  }
 
   // True, and marked, where no kept point is nearer than the distance.
   bool take(const Eigen::Vector2f& pixel) {
@@ -22,7 +28,7 @@ class Occupancy {
         if (other >= 0 && (kept_[static_cast<std::size_t>(other)] - pixel).norm() < distance_) return false;
       }
     }
-    cells_[static_cast<std::size_t>(y * columns_ + x)] = static_cast<int>(kept_.size());
+    cells_[static_cast<std::size_t>(y * columns_ + x)] = static_cast<std::int16_t>(kept_.size());
     kept_.push_back(pixel);
     return true;
   }
@@ -30,8 +36,8 @@ class Occupancy {
  private:
   float distance_;
   int columns_, rows_;
-  std::vector<int> cells_;
-  std::vector<Eigen::Vector2f> kept_;
+  std::pmr::vector<std::int16_t> cells_;
+  Pixels kept_;
 };
 
 bool insideImage(const cv::Mat& image, const Eigen::Vector2f& pixel, float border) {
@@ -41,15 +47,16 @@ bool insideImage(const cv::Mat& image, const Eigen::Vector2f& pixel, float borde
 
 }  // namespace
 
-std::vector<Eigen::Vector2f> predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
-                                           const Pose& world_T_last, const Pose& world_T_predicted,
-                                           double scene_depth) {
+Pixels predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
+                     const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth,
+                     std::pmr::memory_resource* memory) {
   const Pose last_T_world = world_T_last.inverse(), predicted_T_world = world_T_predicted.inverse();
-  std::vector<Eigen::Vector2f> predictions;
+  Pixels predictions(memory);
   predictions.reserve(tracks.size());
+  AscendingPoints points(view);
   for (const Track& track : tracks) {
     double depth = scene_depth;
-    if (const ViewPoint* point = findPoint(view, track.id)) {
+    if (const ViewPoint* point = points.find(track.id)) {
       depth = (last_T_world * worldPosition(view, *point)).norm();
     }
     const Eigen::Vector3d in_last = bearing(camera, track.pixel.cast<double>()) * depth;
@@ -60,10 +67,13 @@ std::vector<Eigen::Vector2f> predictPixels(const Camera& camera, const std::vect
   return predictions;
 }
 
-double medianDepth(const std::vector<Track>& tracks, const MapView& view, const Pose& world_T_camera, double fallback) {
-  std::vector<double> depths;
+double medianDepth(const std::vector<Track>& tracks, const MapView& view, const Pose& world_T_camera, double fallback,
+                   std::pmr::memory_resource* memory) {
+  std::pmr::vector<double> depths(memory);
+  depths.reserve(tracks.size());
+  AscendingPoints points(view);
   for (const Track& track : tracks) {
-    if (const ViewPoint* point = findPoint(view, track.id)) {
+    if (const ViewPoint* point = points.find(track.id)) {
       depths.push_back((worldPosition(view, *point) - world_T_camera.translation).norm());
     }
   }
@@ -72,23 +82,22 @@ double medianDepth(const std::vector<Track>& tracks, const MapView& view, const 
   return depths[depths.size() / 2];
 }
 
-std::vector<FlowMatch> followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,
-                                    const std::vector<Eigen::Vector2f>& predictions, const FlowOptions& options) {
-  std::vector<FlowMatch> matches(tracks.size());
+FlowMatches followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,
+                         const Pixels& predictions, const FlowOptions& options, std::pmr::memory_resource* memory) {
+  FlowMatches matches(tracks.size(), memory);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     matches[i] = followPoint(from.pyramid, to.pyramid, tracks[i].pixel, predictions[i], options);
   }
   return matches;
 }
 
-std::vector<Track> filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap& edges,
-                                const std::vector<Track>& tracks, const std::vector<FlowMatch>& matches,
-                                const FlowOptions& options) {
+void filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap& edges,
+                  const std::vector<Track>& tracks, const FlowMatches& matches, const FlowOptions& options,
+                  std::vector<Track>& kept, std::pmr::memory_resource* memory) {
   const cv::Mat& image = to.pyramid.levels[0];
   const auto border = static_cast<float>(options.window / 2 + 1);
-  Occupancy occupancy(image.cols, image.rows, static_cast<float>(options.redundancy));
-  std::vector<Track> kept;
-  kept.reserve(tracks.size());
+  Occupancy occupancy(image.cols, image.rows, static_cast<float>(options.redundancy), tracks.size(), memory);
+  kept.clear();
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const Track& track = tracks[i];
     const FlowMatch& match = matches[i];
@@ -103,7 +112,6 @@ std::vector<Track> filterTracks(const FrameImages& from, const FrameImages& to, 
     kept.push_back(track);
     kept.back().pixel = match.pixel;
   }
-  return kept;
 }
 
 }  // namespace edgeslam

@@ -2,6 +2,7 @@
 // pose, and what is redundant, inconsistent there and back, or off the edges is dropped.
 #pragma once
 
+#include <memory_resource>
 #include <vector>
 
 #include "flow/optical_flow.h"
@@ -13,20 +14,27 @@ namespace edgeslam {
 
 // Where each track should be seen after the camera moved: its last pixel plus the motion of its map point, or, where it
 // has none, of a point at the scene's usual depth.
-std::vector<Eigen::Vector2f> predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
-                                           const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth);
+using Pixels = std::pmr::vector<Eigen::Vector2f>;
+
+Pixels predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
+                     const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth,
+                     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // Median distance of the tracks' map points from the camera [map units]; `fallback` where none has one.
-double medianDepth(const std::vector<Track>& tracks, const MapView& view, const Pose& world_T_camera, double fallback);
+double medianDepth(const std::vector<Track>& tracks, const MapView& view, const Pose& world_T_camera, double fallback,
+                   std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // One entry a track: the pixel in `to`, or nothing (found false).
-std::vector<FlowMatch> followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,
-                                    const std::vector<Eigen::Vector2f>& predictions, const FlowOptions& options);
+using FlowMatches = std::pmr::vector<FlowMatch>;
+
+FlowMatches followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,
+                         const Pixels& predictions, const FlowOptions& options,
+                         std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // P6: keeps the tracks that were found, agree there and back across their edge, lie on an edge of `edges`, and are not
-// too near to an older one. Writes their new pixels.
-std::vector<Track> filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap& edges,
-                                const std::vector<Track>& tracks, const std::vector<FlowMatch>& matches,
-                                const FlowOptions& options);
+// too near to an older one, with their new pixels, in place of what is in `kept`.
+void filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap& edges,
+                  const std::vector<Track>& tracks, const FlowMatches& matches, const FlowOptions& options,
+                  std::vector<Track>& kept, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 }  // namespace edgeslam

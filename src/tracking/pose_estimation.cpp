@@ -30,10 +30,13 @@ PoseObservation observationOf(const Camera& camera, const MapView& view, const V
 }
 
 // Of the mapped tracks; 0 where there are none.
-double medianInverseDepth(const MapView& view, const std::vector<Track>& tracks, const Pose& camera_T_world) {
-  std::vector<double> values;
+double medianInverseDepth(const MapView& view, const std::vector<Track>& tracks, const Pose& camera_T_world,
+                          std::pmr::memory_resource* memory) {
+  std::pmr::vector<double> values(memory);
+  values.reserve(tracks.size());
+  AscendingPoints points(view);
   for (const Track& track : tracks) {
-    if (const ViewPoint* point = findPoint(view, track.id)) {
+    if (const ViewPoint* point = points.find(track.id)) {
       values.push_back(1 / (camera_T_world * worldPosition(view, *point)).norm());
     }
   }
@@ -46,12 +49,13 @@ double medianInverseDepth(const MapView& view, const std::vector<Track>& tracks,
 // Tracks that have no depth yet: with one that is little more than a guess, what they measure is where they are across
 // the epipolar line of their keyframe.
 void addUnmapped(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
-                 const Pose& camera_T_world, const FramePoseOptions& options,
-                 std::vector<PoseObservation>& observations) {
-  const double inverse_depth = medianInverseDepth(view, tracks, camera_T_world);
+                 const Pose& camera_T_world, const FramePoseOptions& options, std::pmr::memory_resource* memory,
+                 PoseObservations& observations) {
+  const double inverse_depth = medianInverseDepth(view, tracks, camera_T_world, memory);
   if (inverse_depth <= 0) return;
+  AscendingPoints points(view);
   for (const Track& track : tracks) {
-    if (!track.keyframe_images || !view.keyframes.contains(track.keyframe) || findPoint(view, track.id)) continue;
+    if (!track.keyframe_images || !view.keyframes.contains(track.keyframe) || points.find(track.id)) continue;
     ViewPoint guessed;
     guessed.host = track.keyframe;
     guessed.host_bearing = bearing(camera, track.keyframe_pixel.cast<double>());
@@ -67,22 +71,25 @@ void addUnmapped(const Camera& camera, const MapView& view, const std::vector<Tr
 }  // namespace
 
 FramePose estimatePose(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
-                       const Pose& world_T_predicted, const FramePoseOptions& options) {
-  FramePose pose;
-  std::vector<PoseObservation> observations;
+                       const Pose& world_T_predicted, const FramePoseOptions& options,
+                       std::pmr::memory_resource* memory) {
+  FramePose pose(memory);
+  PoseObservations observations(memory);
   observations.reserve(tracks.size());
+  pose.track_of_observation.reserve(tracks.size());
+  AscendingPoints mapped_points(view);
   const Pose predicted_T_world = world_T_predicted.inverse();
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (const ViewPoint* point = findPoint(view, tracks[i].id)) {
+    if (const ViewPoint* point = mapped_points.find(tracks[i].id)) {
       observations.push_back(observationOf(camera, view, *point, tracks[i], predicted_T_world));
       pose.track_of_observation.push_back(static_cast<int>(i));
     }
   }
   const std::size_t mapped = observations.size();
   if (view.initialised && options.unmapped_depth_sigma > 0) {
-    addUnmapped(camera, view, tracks, predicted_T_world, options, observations);
+    addUnmapped(camera, view, tracks, predicted_T_world, options, memory, observations);
   }
-  pose.result = adjustPose(camera, world_T_predicted, observations, options);
+  pose.result = adjustPose(camera, world_T_predicted, observations, options, memory);
   // What is not mapped helps the pose, but says nothing of how much of the map is found again.
   observations.resize(mapped);
   pose.result.inliers.resize(mapped);
@@ -92,14 +99,17 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
       pose.result.converged && 2 * pose.result.inlier_count >= static_cast<int>(observations.size());
   if (trustworthy || !view.initialised) return pose;
 
-  std::vector<Eigen::Vector3d> points, bearings;
+  Vectors3 points(memory), bearings(memory);
+  points.reserve(mapped);
+  bearings.reserve(mapped);
   for (const PoseObservation& observation : observations) {
     points.push_back(observation.point);
     bearings.push_back(bearing(camera, observation.measurement.pixel));
   }
-  const ResectioningResult resectioned = resection(points, bearings, 3.0 / meanFocalLength(camera), /*seed=*/1);
+  const ResectioningResult resectioned = resectionBySamples(points, bearings, 3.0 / meanFocalLength(camera), /*seed=*/1,
+                                                            /*iterations=*/200, memory);
   if (!resectioned.found) return pose;
-  const PoseResult second = adjustPose(camera, resectioned.camera_T_world.inverse(), observations, options);
+  const PoseResult second = adjustPose(camera, resectioned.camera_T_world.inverse(), observations, options, memory);
   if (second.converged && second.inlier_count > pose.result.inlier_count) {
     pose.result = second;
     pose.by_resectioning = true;

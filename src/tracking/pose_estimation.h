@@ -2,6 +2,7 @@
 // that fails.
 #pragma once
 
+#include <memory_resource>
 #include <vector>
 
 #include "adjustment/pose_adjustment.h"
@@ -16,14 +17,17 @@ struct FramePoseOptions : PoseOptions {
 };
 
 struct FramePose {
+  explicit FramePose(std::pmr::memory_resource* memory) : result(memory), track_of_observation(memory) {}
+
   PoseResult result;
-  std::vector<int> track_of_observation;  // index into the tracks of each entry of result.inliers
+  std::pmr::vector<int> track_of_observation;  // index into the tracks of each entry of result.inliers
   bool by_resectioning = false;
 };
 
 // Tracks without a map point help with what they measure across their epipolar lines; inliers and their count are of
 // the map points alone.
 FramePose estimatePose(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
-                       const Pose& world_T_predicted, const FramePoseOptions& options);
+                       const Pose& world_T_predicted, const FramePoseOptions& options,
+                       std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 }  // namespace edgeslam

@@ -1,8 +1,9 @@
 #include "tracking/sparse_alignment.h"
 
 #include <Eigen/Cholesky>
-#include <array>
 #include <cmath>
+
+#include "flow/patch_alignment.h"
 
 namespace edgeslam {
 namespace {
@@ -11,66 +12,33 @@ constexpr int side = 5;  // of a patch [px of the level]
 constexpr int area = side * side;
 
 struct Patch {
-  Eigen::Vector3d position;                        // in the first camera's frame
-  std::array<float, area> grey;                    // less the patch's mean
-  std::array<float, area> gradient_x, gradient_y;  // likewise
-  Eigen::Matrix<double, 2, 6>
-      pixel_by_motion;  // d level pixel / d [translation; rotation] of the point in the first frame
+  Eigen::Vector3d position;  // in the first camera's frame
+  PatchTemplate appearance;
+  // d level pixel / d [translation; rotation] of the point in the first frame, and what it makes of the patch's tensor.
+  Eigen::Matrix<double, 2, 6> pixel_by_motion;
+  Matrix6d information;
 };
 
-bool sample(const cv::Mat& image, double x, double y, int width, float* out) {
-  const int radius = width / 2;
-  const double left = x - radius, top = y - radius;
-  if (!(left >= -16 && top >= -16 && left + width < image.cols + 15 && top + width < image.rows + 15)) return false;
-  const double left_floor = std::floor(left), top_floor = std::floor(top);
-  const auto a = static_cast<float>(left - left_floor), b = static_cast<float>(top - top_floor);
-  const auto step = static_cast<std::ptrdiff_t>(image.step[0]);
-  const unsigned char* row =
-      image.data + static_cast<std::ptrdiff_t>(top_floor) * step + static_cast<std::ptrdiff_t>(left_floor);
-  for (int v = 0; v < width; ++v, row += step) {
-    for (int u = 0; u < width; ++u) {
-      *out++ = (1 - b) * ((1 - a) * static_cast<float>(row[u]) + a * static_cast<float>(row[u + 1])) +
-               b * ((1 - a) * static_cast<float>(row[u + step]) + a * static_cast<float>(row[u + step + 1]));
-    }
-  }
-  return true;
-}
+using Patches = std::pmr::vector<Patch>;
 
-void removeMean(std::array<float, area>& values) {
-  float sum = 0;
-  for (const float value : values) sum += value;
-  for (float& value : values) value -= sum / area;
-}
-
-std::vector<Patch> makePatches(const Camera& camera, const cv::Mat& image, int level,
-                               const std::vector<AlignmentPoint>& points) {
+Patches makePatches(const Camera& camera, const cv::Mat& image, int level, const AlignmentPoints& points,
+                    std::pmr::memory_resource* memory) {
   const double scale = 1.0 / (1 << level);
-  std::vector<Patch> patches;
+  Patches patches(memory);
   patches.reserve(points.size());
   for (const AlignmentPoint& point : points) {
-    constexpr int outer = side + 2;
-    std::array<float, outer * outer> samples;
-    if (!sample(image, point.pixel.x() * scale, point.pixel.y() * scale, outer, samples.data())) continue;
-    Patch patch;
-    patch.position = point.position;
-    for (int v = 0; v < side; ++v) {
-      for (int u = 0; u < side; ++u) {
-        const int inner = (v + 1) * outer + u + 1;
-        const auto centre = static_cast<std::size_t>(inner);
-        const int within = v * side + u;
-        const auto index = static_cast<std::size_t>(within);
-        patch.grey[index] = samples[centre];
-        patch.gradient_x[index] = 0.5f * (samples[centre + 1] - samples[centre - 1]);
-        patch.gradient_y[index] = 0.5f * (samples[centre + outer] - samples[centre - outer]);
-      }
+    Patch& patch = patches.emplace_back();
+    const Eigen::Vector2f pixel = point.pixel * static_cast<float>(scale);
+    if (!makeTemplate(image, pixel, Eigen::Matrix2f::Identity(), side, patch.appearance)) {
+      patches.pop_back();
+      continue;
     }
-    removeMean(patch.grey);
-    removeMean(patch.gradient_x);
-    removeMean(patch.gradient_y);
+    patch.position = point.position;
     Eigen::Matrix<double, 2, 3> jacobian;
     project(camera, point.position, &jacobian);
     patch.pixel_by_motion << jacobian * scale, -jacobian * skew(point.position) * scale;
-    patches.push_back(patch);
+    const Eigen::Matrix2d tensor = patch.appearance.normal_matrix.topLeftCorner<2, 2>().cast<double>();
+    patch.information.noalias() = patch.pixel_by_motion.transpose() * (tensor * patch.pixel_by_motion);
   }
   return patches;
 }
@@ -82,36 +50,22 @@ struct Comparison {
   Vector6d right = Vector6d::Zero();
 };
 
-Comparison compare(const Camera& camera, const std::vector<Patch>& patches, const cv::Mat& image, int level,
-                   const Pose& to_T_from, double huber) {
+Comparison compare(const Camera& camera, const Patches& patches, const cv::Mat& image, int level, const Pose& to_T_from,
+                   double huber) {
   const double scale = 1.0 / (1 << level);
   const Eigen::Matrix3d rotation = to_T_from.rotation.toRotationMatrix();
   Comparison sum;
-  std::array<float, area> samples;
   for (const Patch& patch : patches) {
     const Eigen::Vector3d moved = rotation * patch.position + to_T_from.translation;
     if (moved.z() < 0.05 * patch.position.z()) continue;
     const Eigen::Vector2d pixel = project(camera, moved) * scale;
     if (!(pixel.x() > 0 && pixel.y() > 0 && pixel.x() < image.cols - 1 && pixel.y() < image.rows - 1)) continue;
-    if (!sample(image, pixel.x(), pixel.y(), side, samples.data())) continue;
-    removeMean(samples);
-    float square = 0, xx = 0, xy = 0, yy = 0, x_right = 0, y_right = 0;
-    for (std::size_t i = 0; i < area; ++i) {
-      const float difference = samples[i] - patch.grey[i];
-      square += difference * difference;
-      xx += patch.gradient_x[i] * patch.gradient_x[i];
-      xy += patch.gradient_x[i] * patch.gradient_y[i];
-      yy += patch.gradient_y[i] * patch.gradient_y[i];
-      x_right += patch.gradient_x[i] * difference;
-      y_right += patch.gradient_y[i] * difference;
-    }
-    const double root = std::sqrt(square / area);
+    const PatchDifference difference = differenceAt(patch.appearance, image, pixel.cast<float>());
+    const double root = std::sqrt(difference.squares / area);
     const double weight = root > huber ? huber / root : 1.0;
     sum.cost += root > huber ? huber * (2 * root - huber) : root * root;
-    Eigen::Matrix2d tensor;
-    tensor << xx, xy, xy, yy;
-    sum.normal_matrix += weight * patch.pixel_by_motion.transpose() * tensor * patch.pixel_by_motion;
-    sum.right += weight * patch.pixel_by_motion.transpose() * Eigen::Vector2d(x_right, y_right);
+    sum.normal_matrix += weight * patch.information;
+    sum.right.noalias() += patch.pixel_by_motion.transpose() * (weight * difference.along_gradient.cast<double>());
     ++sum.patches;
   }
   if (sum.patches > 0) sum.cost /= sum.patches;
@@ -121,14 +75,14 @@ Comparison compare(const Camera& camera, const std::vector<Patch>& patches, cons
 }  // namespace
 
 Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePyramid& to,
-                   const std::vector<AlignmentPoint>& points, const Pose& first_start, const Pose& second_start,
-                   const SparseAlignmentOptions& options) {
+                   const AlignmentPoints& points, const Pose& first_start, const Pose& second_start,
+                   const SparseAlignmentOptions& options, std::pmr::memory_resource* memory) {
   Pose to_T_from = first_start;
   bool compared = false;
   for (int level = options.coarsest_level; level >= options.finest_level; --level) {
     const auto index = static_cast<std::size_t>(level);
     if (index >= from.levels.size() || index >= to.levels.size()) continue;
-    const std::vector<Patch> patches = makePatches(camera, from.levels[index], level, points);
+    const Patches patches = makePatches(camera, from.levels[index], level, points, memory);
     Comparison best = compare(camera, patches, to.levels[index], level, to_T_from, options.huber);
     if (!compared) {
       const Comparison other = compare(camera, patches, to.levels[index], level, second_start, options.huber);

@@ -3,6 +3,7 @@
 // the flow.
 #pragma once
 
+#include <memory_resource>
 #include <vector>
 
 #include "geometry/camera.h"
@@ -16,6 +17,8 @@ struct AlignmentPoint {
   Eigen::Vector3d position;  // in the first camera's frame, map units
 };
 
+using AlignmentPoints = std::pmr::vector<AlignmentPoint>;
+
 struct SparseAlignmentOptions {
   int coarsest_level = 4;
   int finest_level = 1;
@@ -25,7 +28,8 @@ struct SparseAlignmentOptions {
 
 // to_T_from, from the better of the two starts. Returns `first_start` where too few patches can be compared.
 Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePyramid& to,
-                   const std::vector<AlignmentPoint>& points, const Pose& first_start, const Pose& second_start,
-                   const SparseAlignmentOptions& options);
+                   const AlignmentPoints& points, const Pose& first_start, const Pose& second_start,
+                   const SparseAlignmentOptions& options,
+                   std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 }  // namespace edgeslam

@@ -1,8 +1,10 @@
 // Tracking: every frame its pose, its state, and whether it becomes a keyframe (sections 3.1, 3.2 and 3.4.1 of the
-// paper). Exchanges values with mapping: takes map views, gives tracked frames.
+// paper). Exchanges values with mapping: takes map views, gives tracked frames. All memory is taken at the start: on
+// the way from a frame to its pose there is no allocation, no lock and no system call but reading the clock (design,
+// section 4).
 #pragma once
 
-#include <optional>
+#include <memory_resource>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "tracking/map_reuse.h"
 #include "tracking/patch_refinement.h"
 #include "tracking/pose_estimation.h"
+#include "tracking/recycling_pool.h"
 #include "tracking/rotation_alignment.h"
 #include "tracking/sparse_alignment.h"
 #include "tracking/stage_times.h"
@@ -55,8 +58,9 @@ struct TrackingOutcome {
   KeyframeId reference = -1;               // the keyframe that carries this frame's final pose, or -1
   Pose reference_T_camera;
   int tracked_points = 0;
-  int mapped_points = 0;                  // map points that agree with the pose
-  std::vector<TrackedFrame> for_mapping;  // at most two: the previous frame may become a keyframe late
+  int mapped_points = 0;  // map points that agree with the pose
+  bool tells_mapping = false;
+  TrackedFrame for_mapping;  // this frame, or the one before that became a keyframe late
   StageTimes times;
 };
 
@@ -69,68 +73,90 @@ struct FoundAgain {
 
 class Tracker {
  public:
-  Tracker(const Camera& camera, const TrackerOptions& options)
-      : camera_(camera), options_(options), rotation_grids_(makeRotationGrids(camera)) {}
+  Tracker(const Camera& camera, const TrackerOptions& options);
 
   // Before the first frame: a map is there already, and the camera somewhere in it, not known where. Frames are lost
   // until one of them is found in it. New points are numbered from `first_free_point` on.
   void startLost(const MapView& view, PointId first_free_point);
 
-  // Takes over a newer view of the map, between two frames.
-  void adopt(const MapView& view);
+  // Takes over a newer view of the map, between two frames, and leaves the one before in its place.
+  void adopt(MapView& view);
 
-  // `grey`: CV_8U of the camera's size. Frames come in the order of their time stamps.
-  TrackingOutcome track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey);
+  // `grey`: CV_8U of the camera's size. Frames come in the order of their time stamps. `outcome` is written over.
+  void track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, TrackingOutcome& outcome);
 
   // An unreadable frame: a pose from motion alone.
-  TrackingOutcome skip(std::int64_t time_ns, const std::string& reason) const;
+  void skip(std::int64_t time_ns, const std::string& reason, TrackingOutcome& outcome) const;
+
+  // Makes images ready for frames to come, in place of those that keyframes keep; for another thread.
+  void prepareImages(int count) { image_pool_.keepReady(count); }
 
   // The last frame where its pose was lost is kept until another one is; gives its images and its tracks without a
   // pose, and the keyframe number that is its if mapping makes it one.
   bool hasLostFrame() const { return lost_.images != nullptr; }
-  TrackedFrame keepLostFrame();
-  const EdgeMap& keptEdges() const { return kept_.edges; }
+  void keepLostFrame(TrackedFrame& description);
+  std::shared_ptr<const EdgeMap> keptEdges() const { return kept_.edges; }
   // The kept frame's pose was found after all: tracking goes on from it with the points found, or, where none are
-  // given, with the tracks that it had. `view` shows the map around it.
-  void resume(const MapView& view, const Pose& world_T_camera, const Matrix6d& covariance,
+  // given, with the tracks that it had. `view` shows the map around it; the view before is
+  // left in its place.
+  void resume(MapView& view, const Pose& world_T_camera, const Matrix6d& covariance,
               const std::vector<FoundAgain>& points);
 
   // Of the last frame, tracked or not. Valid after the first.
-  const FrameImages& latestImages() const { return *latest_images_; }
+  const std::shared_ptr<const FrameImages>& latestImages() const { return latest_images_; }
 
   // The last tracked frame, for drawings.
   const std::vector<Track>& tracks() const { return last_.tracks; }
-  const EdgeMap& edges() const { return last_.edges; }
+  const EdgeMap& edges() const { return *last_.edges; }
   const MapView& view() const { return view_; }
 
  private:
   struct TrackedState {
     std::shared_ptr<const FrameImages> images;  // null before the first frame
-    EdgeMap edges;
+    std::shared_ptr<EdgeMap> edges;
     std::vector<Track> tracks;  // ascending ids
     Pose world_T_camera;
-    PoseResult pose;
+    Matrix6d covariance = Matrix6d::Zero();
+    int inlier_count = 0;
   };
 
-  TrackedState prepare(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, StageClock& clock) const;
-  void startMap(TrackedState frame, TrackingOutcome& outcome);
-  bool followAndLocate(const TrackedState& from, TrackedState& frame, StageClock& clock) const;
-  KeyframeDecision judge(const TrackedState& frame) const;
+  void takeMemory();
+  void prepare(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, StageClock& clock);
+  bool isLost(std::int64_t time_ns) const;
+  bool followAndLocate(StageClock& clock);
+  Pose alignImages(double scene_depth);
+  int fewestInliers(std::size_t in_view) const;
+  void dropOutliers(const FramePose& estimate);
+  void reuseMap(TrackedState& frame);
+  void report(TrackingOutcome& outcome) const;
+  void predict(std::int64_t time_ns, const std::string& reason, TrackingOutcome& outcome) const;
+  void lose(std::int64_t time_ns, const char* reason, TrackingOutcome& outcome);
+  Pose predictPose(std::int64_t time_ns) const;
+  void remember();
+
+  void startMap(const char* reason, StageClock& clock, TrackingOutcome& outcome);
+  KeyframeDecision judge() const;
   void becomeKeyframe(TrackedState& frame, const char* reason, TrackingOutcome& outcome);
   void choosePointsIn(TrackedState& frame, KeyframeId keyframe);
-  TrackedFrame describe(const TrackedState& frame, KeyframeId keyframe, const char* reason) const;
-  Pose predictPose(std::int64_t time_ns) const;
-  Pose alignImages(const TrackedState& from, const TrackedState& to, const Pose& world_T_predicted,
-                   double scene_depth) const;
-  void remember(TrackedState frame);
+  void describe(const TrackedState& frame, KeyframeId keyframe, const char* reason, TrackedFrame& description) const;
+  void askForKeyframe();
 
   Camera camera_;
   TrackerOptions options_;
   std::vector<RotationGrid> rotation_grids_;
+  RecyclingPool<FrameImages> image_pool_;
+  RecyclingPool<EdgeMap> edge_pool_;
+  EdgeWorkspace edge_workspace_;
+  PointChoiceWorkspace choice_workspace_;
+  std::vector<Eigen::Vector2f> occupied_;
+  std::vector<ChosenPoint> chosen_;
+  std::vector<std::byte> scratch_memory_;
+  std::pmr::monotonic_buffer_resource scratch_;  // what one frame needs on the way
   MapView view_;
   BlurGate blur_gate_;
   std::shared_ptr<const FrameImages> latest_images_;
-  TrackedState lost_;                // the current frame where its pose was not found
+  TrackedState frame_;               // the current one
+  TrackedState lost_;                // the current one where its pose was not found
   TrackedState kept_;                // a lost frame that others look for
   std::int64_t lost_since_ns_ = -1;  // -1: not lost
   TrackedState last_;                // the last frame that was tracked

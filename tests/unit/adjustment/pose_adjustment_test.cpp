@@ -14,7 +14,7 @@ namespace {
 struct Trial {
   Camera camera;
   Pose truth;
-  std::vector<PoseObservation> observations;
+  PoseObservations observations;
 };
 
 struct TrialOptions {

@@ -9,11 +9,17 @@
 namespace edgeslam {
 namespace {
 
+std::shared_ptr<const FrameImages> imagesOf(const cv::Mat& grey) {
+  auto images = std::make_shared<FrameImages>();
+  images->pyramid.levels.push_back(grey);
+  return images;
+}
+
 RecordingEntry frameEntry(int i) {
   RecordingEntry entry;
   entry.index = i;
   entry.time_ns = madeTime(i);
-  entry.grey = madeFrame(i);
+  entry.images = imagesOf(madeFrame(i));
   return entry;
 }
 
@@ -42,7 +48,7 @@ TEST(RecordingThread, RecordsWhatIsPosted) {
     RecordingEntry entry = frameEntry(i);
     if (i == 10) {
       entry.kind = DecisionKind::dropped;
-      entry.grey.release();
+      entry.images.reset();
     }
     if (i == 20) entry = unreadableFrameEntry(i, madeTime(i), "no signal");
     if (i % 4 == 0) {
@@ -125,7 +131,7 @@ TEST(RecordingThread, StopsInTimeAndTellsWhatWasLeft) {
   description.camera.height = 3000;
   RecordingThread thread(folder.path("recording"), description, noLimits(), 300);
   RecordingEntry entry = frameEntry(0);
-  entry.grey = cv::Mat(description.camera.height, description.camera.width, CV_8UC1, cv::Scalar(7));
+  entry.images = imagesOf(cv::Mat(description.camera.height, description.camera.width, CV_8UC1, cv::Scalar(7)));
   for (int i = 0; i < 300; ++i) {
     entry.index = i;
     entry.time_ns = madeTime(i);
@@ -140,7 +146,7 @@ TEST(RecordingThread, StopsInTimeAndTellsWhatWasLeft) {
   const Recording recording = readRecording(folder.path("recording"));
   EXPECT_EQ(static_cast<std::int64_t>(recording.frames.size()), status.frames);
   EXPECT_EQ(recording.decisions.not_recorded, status.not_recorded);
-  EXPECT_EQ(entry.grey.u->refcount, 1);
+  EXPECT_EQ(entry.images.use_count(), 1);
 }
 
 TEST(RecordingThread, AfterTheBudgetImagesAreLetGo) {
@@ -155,7 +161,7 @@ TEST(RecordingThread, AfterTheBudgetImagesAreLetGo) {
   EXPECT_FALSE(status.recording);
   EXPECT_NE(status.message.find("budget"), std::string::npos) << status.message;
   EXPECT_LT(status.frames, 100);
-  for (const RecordingEntry& entry : entries) EXPECT_EQ(entry.grey.u->refcount, 1);
+  for (const RecordingEntry& entry : entries) EXPECT_EQ(entry.images.use_count(), 1);
   EXPECT_EQ(static_cast<std::int64_t>(readRecording(folder.path("recording")).frames.size()), status.frames);
 }
 

@@ -11,7 +11,7 @@ namespace edgeslam {
 namespace {
 
 struct Sighting {
-  std::vector<Eigen::Vector3d> points, bearings;
+  Vectors3 points, bearings;
   std::vector<char> good;
   Pose camera_T_world;
 };
@@ -82,14 +82,14 @@ TEST(Resection, RecoversFisheyePose) {
 TEST(Resection, AnswersDegenerateInputWithoutThrowing) {
   const Sighting sighting = makeSighting(4, 20, Structure::volume, 0.1, 0);
   for (const long count : {0, 1, 3, 4, 5}) {
-    const std::vector<Eigen::Vector3d> points(sighting.points.begin(), sighting.points.begin() + count);
-    const std::vector<Eigen::Vector3d> bearings(sighting.bearings.begin(), sighting.bearings.begin() + count);
+    const Vectors3 points(sighting.points.begin(), sighting.points.begin() + count);
+    const Vectors3 bearings(sighting.bearings.begin(), sighting.bearings.begin() + count);
     EXPECT_FALSE(resection(points, bearings, kThreshold, 1).found) << count;
   }
-  const std::vector<Eigen::Vector3d> one_place(20, Eigen::Vector3d(1, 2, 3));
-  EXPECT_FALSE(resection(one_place, std::vector<Eigen::Vector3d>(20, Eigen::Vector3d::UnitZ()), kThreshold, 1).found);
+  const Vectors3 one_place(20, Eigen::Vector3d(1, 2, 3));
+  EXPECT_FALSE(resection(one_place, Vectors3(20, Eigen::Vector3d::UnitZ()), kThreshold, 1).found);
   EXPECT_FALSE(resection(one_place, sighting.bearings, kThreshold, 1).found);
-  std::vector<Eigen::Vector3d> line, line_bearings;
+  Vectors3 line, line_bearings;
   for (int i = 0; i < 20; ++i) {
     line.emplace_back(0.1 * i - 1, 0.05 * i, 3 + 0.1 * i);
     line_bearings.push_back(line.back().normalized());

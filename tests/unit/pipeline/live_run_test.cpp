@@ -50,9 +50,9 @@ class KeptDecisions : public DecisionSink {
     decisions.snapshots.insert(number);
   }
   void passedOver(std::int64_t index, std::int64_t /*time_ns*/) noexcept override { passed_over.push_back(index); }
-  void processed(std::int64_t index, std::int64_t /*time_ns*/, const cv::Mat& grey) noexcept override {
-    frames.push_back(index);
-    images.push_back(grey);
+  void processed(const std::shared_ptr<const FrameImages>& processed) noexcept override {
+    frames.push_back(processed->frame_index);
+    images.push_back(processed->pyramid.levels[0].clone());
   }
   void unreadable(std::int64_t index, std::int64_t /*time_ns*/, const std::string& /*problem*/) noexcept override {
     frames.push_back(index);

@@ -312,7 +312,7 @@ MappingMessage lostInRoom(std::int64_t number, std::uint64_t room, const Pose& p
   message.frame.keyframe = 100;
   auto images = std::make_shared<FrameImages>();
   images->pyramid = buildPyramid(renderRoom(room, placeCamera(), pose), 4);
-  message.edges = detectEdges(images->pyramid.levels[0], {});
+  message.edges = std::make_shared<EdgeMap>(detectEdges(images->pyramid.levels[0], {}));
   message.frame.images = std::move(images);
   return message;
 }

@@ -3,54 +3,27 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-
-#include "unit/tracking/textured_plane.h"
+#include "unit/tracking/plane_walk.h"
 
 namespace edgeslam {
 namespace {
 
-const Camera camera = smallCamera();
-constexpr std::int64_t interval_ns = 33'333'333;
+const Camera& camera = walking_camera;
+constexpr std::int64_t interval_ns = walking_interval_ns;
 constexpr std::int64_t long_after_ns = 3'000'000'000;  // the last frame's points are not looked for any more
 
-const TexturedPlane& wall() {
-  static const TexturedPlane plane{SmoothTexture(51, 10, 60)};
-  return plane;
+Pose path(int i) { return walk(i); }
+
+// The frame's result; its messages are added to `messages`.
+FrameResult processFrame(TrackingWorker& worker, std::int64_t index, std::int64_t time_ns, const cv::Mat& grey,
+                         std::vector<MappingMessage>& messages) {
+  FrameMessages of_frame;
+  const FrameResult result = worker.process(index, time_ns, grey, of_frame);
+  messages.insert(messages.end(), of_frame.begin(), of_frame.end());
+  return result;
 }
 
-Pose path(int i) { return {rotationExp({0.002 * i, -0.003 * i, 0.001 * i}), {0.012 * i, 0.005 * i, 0.004 * i}}; }
-
-// Rendered once, as that takes longer than tracking.
-const cv::Mat& imageAt(int i) {
-  static std::map<int, cv::Mat> rendered;
-  cv::Mat& image = rendered[i];
-  if (image.empty()) image = wall().render(camera, path(i));
-  return image;
-}
-
-const cv::Mat& elsewhere() {
-  static const cv::Mat image = TexturedPlane{SmoothTexture(77, 10, 60)}.render(camera, Pose());
-  return image;
-}
-
-// What mapping would answer to the first frame, if it knew the plane.
-MapView knownMap(const TrackedFrame& first) {
-  MapView view = flatView(first);
-  view.version = 1;
-  view.initialised = true;
-  view.waiting_for.clear();
-  view.keyframes[0].images = first.images;
-  for (std::size_t i = 0; i < view.points.size(); ++i) {
-    const PointObservation& seen = first.observations[i];
-    ViewPoint& point = view.points[i];
-    point = viewPoint(view, point.id, 0, wall().seenAt(camera, Pose(), seen.measurement.pixel));
-    point.source = 0;
-    point.source_measurement = seen.measurement;
-    point.corner = seen.corner;
-  }
-  return view;
-}
+void take(TrackingWorker& worker, MapUpdate update) { worker.take(update); }
 
 double distance(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }
 
@@ -65,12 +38,12 @@ struct Followed {
     process(0, 0, imageAt(0));
     update.number = update.answers = 0;
     update.view = knownMap(messages.at(0).frame);
-    worker.take(update);
+    take(worker, update);
     for (int i = 1; i <= last; ++i) process(i, i * interval_ns, imageAt(i));
   }
 
   FrameResult process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
-    return worker.process(index, time_ns, grey, messages);
+    return processFrame(worker, index, time_ns, grey, messages);
   }
 
   // Mapping knows of the messages up to `answers`; the map is as it was.
@@ -111,7 +84,7 @@ TEST(TrackingWorker, BeforeTheMapEveryFrameIsAMessageAndNoneHasAPose) {
   TrackingWorker worker(camera, Settings());
   std::vector<MappingMessage> messages;
   for (int i = 0; i < 4; ++i) {
-    const FrameResult result = worker.process(i, i * interval_ns, imageAt(i), messages);
+    const FrameResult result = processFrame(worker, i, i * interval_ns, imageAt(i), messages);
     EXPECT_EQ(result.index, i);
     EXPECT_EQ(result.time_ns, i * interval_ns);
     EXPECT_EQ(result.state, TrackingState::initialising);
@@ -136,7 +109,7 @@ TEST(TrackingWorker, MessagesAreNumberedOneByOneAndKeyframesNeverGoBack) {
     const bool lost = i % 9 == 4 || i % 9 == 5;
     run.process(i, i * interval_ns, lost ? elsewhere() : imageAt(i));
     run.nextUpdate(run.messages.back().number).not_found = "it looks like nothing";
-    run.worker.take(run.update);
+    take(run.worker, run.update);
   }
   ASSERT_GE(run.questions().size(), 3U);
   KeyframeId keyframe = -1;
@@ -166,7 +139,7 @@ TEST(TrackingWorker, ALostFrameIsAskedForWithAllThatIsKnownOfIt) {
   EXPECT_GE(question.frame.keyframe, 1);
   ASSERT_TRUE(question.frame.images);
   EXPECT_EQ(question.frame.images->frame_index, 4);
-  EXPECT_FALSE(question.edges.points.empty());
+  EXPECT_FALSE(question.edges->points.empty());
   ASSERT_TRUE(question.last_good_pose);
   EXPECT_LT(distance(*question.last_good_pose, path(3)), 0.001);
   EXPECT_NEAR(question.seconds_since, 1.0 / 30, 1e-6);
@@ -179,11 +152,11 @@ TEST(TrackingWorker, OnlyOneQuestionAtATime) {
     run.process(i, i * interval_ns, elsewhere());
     // What mapping made of the messages before the question answers nothing.
     run.nextUpdate(run.questions().at(0).number - 1);
-    run.worker.take(run.update);
+    take(run.worker, run.update);
   }
   ASSERT_EQ(run.questions().size(), 1U);
   run.nextUpdate(run.questions().at(0).number).not_found = "too few points agree";
-  run.worker.take(run.update);
+  take(run.worker, run.update);
   const FrameResult next = run.process(8, 8 * interval_ns, elsewhere());
   EXPECT_EQ(next.state, TrackingState::lost);
   EXPECT_NE(next.reason.find("too few points agree"), std::string::npos) << next.reason;
@@ -197,7 +170,7 @@ TEST(TrackingWorker, LongAfterTheLossTheTracksAreNoHelpAnyMore) {
   for (int i = 0; i < 15; ++i) {
     run.process(4 + i, (4 + i) * interval_ns, elsewhere());
     run.nextUpdate(run.messages.back().number);
-    run.worker.take(run.update);
+    take(run.worker, run.update);
   }
   const std::vector<MappingMessage> questions = run.questions();
   ASSERT_EQ(questions.size(), 15U);
@@ -222,7 +195,7 @@ TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
   Followed run(3);
   run.process(4, 4 * interval_ns, elsewhere());
   run.nextUpdate(run.messages.back().number);
-  run.worker.take(run.update);
+  take(run.worker, run.update);
   // Long after the loss the camera is back, but no point is followed there.
   ASSERT_EQ(run.process(90, long_after_ns, imageAt(8)).state, TrackingState::lost);
   const MappingMessage question = run.messages.back();
@@ -235,7 +208,7 @@ TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
   answer.found = run.foundAt(90, 8);
   answer.found->how = GetParam();
   ASSERT_GT(answer.found->points.size(), 50U);
-  run.worker.take(answer);
+  take(run.worker, answer);
   for (int i = 9; i <= 12; ++i) {
     const FrameResult result = run.process(83 + i, long_after_ns + (i - 8) * interval_ns, imageAt(i));
     ASSERT_TRUE(result.has_pose) << result.reason;
@@ -246,7 +219,7 @@ TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
     // Updates after the answer still tell of it, and are no answer any more.
     run.update.number++;
     run.update.view.version++;
-    run.worker.take(run.update);
+    take(run.worker, run.update);
   }
   for (const MappingMessage& message : run.messages) {
     if (message.number <= question.number) continue;
@@ -269,7 +242,7 @@ TEST(TrackingWorker, AnAnswerAfterTrackingWasRegainedIsNotUsed) {
   ASSERT_EQ(run.process(5, 5 * interval_ns, imageAt(5)).state, TrackingState::tracking);
   MapUpdate& answer = run.nextUpdate(question);
   answer.found = astray(4, run);
-  run.worker.take(answer);
+  take(run.worker, answer);
   EXPECT_EQ(run.worker.tracker().view().version, answer.view.version) << "the view is taken";
   for (int i = 6; i < 9; ++i) {
     const FrameResult result = run.process(i, i * interval_ns, imageAt(i));
@@ -286,7 +259,7 @@ TEST(TrackingWorker, NorIsItWhenTrackingWasLostOnceMore) {
   ASSERT_EQ(run.process(8, 8 * interval_ns, elsewhere()).state, TrackingState::lost);
   MapUpdate& answer = run.nextUpdate(question);
   answer.found = astray(4, run);
-  run.worker.take(answer);
+  take(run.worker, answer);
   // Frame 4 is history: tracking goes on from frame 7.
   const FrameResult result = run.process(9, 9 * interval_ns, imageAt(9));
   EXPECT_EQ(result.state, TrackingState::tracking) << result.reason;
@@ -299,7 +272,7 @@ TEST(TrackingWorker, NorDoesItsReasonTellOfTheNextLoss) {
   const std::int64_t question = run.messages.back().number;
   ASSERT_EQ(run.process(5, 5 * interval_ns, imageAt(5)).state, TrackingState::tracking);
   run.nextUpdate(question).not_found = "too few points agree";
-  run.worker.take(run.update);
+  take(run.worker, run.update);
   const FrameResult lost = run.process(6, 6 * interval_ns, elsewhere());
   EXPECT_EQ(lost.state, TrackingState::lost);
   EXPECT_EQ(lost.reason.find("too few points agree"), std::string::npos) << lost.reason;
@@ -322,7 +295,7 @@ TEST(TrackingWorker, InAMapMadeEarlierFramesAreLostUntilOneIsFound) {
   TrackingWorker worker(camera, Settings());
   worker.goOnWith(earlier.update.view, 10'000);
   std::vector<MappingMessage> messages;
-  EXPECT_EQ(worker.process(0, long_after_ns, imageAt(4), messages).state, TrackingState::lost);
+  EXPECT_EQ(processFrame(worker, 0, long_after_ns, imageAt(4), messages).state, TrackingState::lost);
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_TRUE(messages[0].lost);
   EXPECT_FALSE(messages[0].last_good_pose);
@@ -330,8 +303,8 @@ TEST(TrackingWorker, InAMapMadeEarlierFramesAreLostUntilOneIsFound) {
   MapUpdate answer = earlier.update;
   answer.answers = 0;
   answer.found = earlier.foundAt(0, 4);
-  worker.take(answer);
-  const FrameResult result = worker.process(1, long_after_ns + interval_ns, imageAt(5), messages);
+  take(worker, answer);
+  const FrameResult result = processFrame(worker, 1, long_after_ns + interval_ns, imageAt(5), messages);
   EXPECT_EQ(result.state, TrackingState::relocalised) << result.reason;
   EXPECT_LT(distance(result.world_T_camera, path(5)), 0.001);
   for (const MappingMessage& message : messages) {

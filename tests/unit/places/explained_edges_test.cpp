@@ -21,8 +21,8 @@ EdgeMap emptyMap() {
   return edges;
 }
 
-std::vector<VisiblePoint> pointsAlong(float from, float to, float y, const Eigen::Vector2f& normal) {
-  std::vector<VisiblePoint> points;
+VisiblePoints pointsAlong(float from, float to, float y, const Eigen::Vector2f& normal) {
+  VisiblePoints points;
   for (float x = from; x <= to; x += 20) {
     VisiblePoint point;
     point.pixel = {x, y};

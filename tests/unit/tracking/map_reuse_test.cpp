@@ -50,7 +50,7 @@ TEST(MapReuse, FindsWhatCameIntoViewAgainWhereItIs) {
   const Revisit made = revisit();
   ASSERT_GT(made.view.points.size(), 100u);
   std::vector<Track> tracks;
-  reuseMapPoints(made.camera, made.view, made.images, made.edges, made.world_T_camera, 1000, {}, tracks);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, {}, tracks);
   EXPECT_GT(tracks.size(), made.view.points.size() / 2);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     EXPECT_LT(errorOf(made, tracks[i]), 0.5);
@@ -63,9 +63,9 @@ TEST(MapReuse, FindsWhatCameIntoViewAgainWhereItIs) {
 TEST(MapReuse, WhatIsFollowedIsNotTakenTwiceAndTheNumberIsKept) {
   const Revisit made = revisit();
   std::vector<Track> tracks;
-  reuseMapPoints(made.camera, made.view, made.images, made.edges, made.world_T_camera, 40, {}, tracks);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 40, {}, tracks);
   ASSERT_EQ(tracks.size(), 40u);
-  reuseMapPoints(made.camera, made.view, made.images, made.edges, made.world_T_camera, 60, {}, tracks);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 60, {}, tracks);
   ASSERT_EQ(tracks.size(), 60u);
   for (std::size_t i = 1; i < tracks.size(); ++i) EXPECT_LT(tracks[i - 1].id, tracks[i].id);
 }
@@ -75,7 +75,7 @@ TEST(MapReuse, NothingIsFoundInAnotherPlace) {
   made.images = imagesOf(cv::Mat(made.camera.height, made.camera.width, CV_8U, cv::Scalar(100)), 1);
   made.edges = detectEdges(made.images->pyramid.levels[0], EdgeOptions());
   std::vector<Track> tracks;
-  reuseMapPoints(made.camera, made.view, made.images, made.edges, made.world_T_camera, 1000, {}, tracks);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, {}, tracks);
   EXPECT_TRUE(tracks.empty());
 }
 
@@ -84,7 +84,7 @@ TEST(MapReuse, CanBeSwitchedOff) {
   MapReuseOptions off;
   off.enabled = false;
   std::vector<Track> tracks;
-  reuseMapPoints(made.camera, made.view, made.images, made.edges, made.world_T_camera, 1000, off, tracks);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, off, tracks);
   EXPECT_TRUE(tracks.empty());
 }
 

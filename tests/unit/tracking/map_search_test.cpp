@@ -14,7 +14,7 @@ constexpr double degree = M_PI / 180;
 
 struct Searched {
   Map map;
-  std::vector<SearchPoint> points;
+  SearchPoints points;
 };
 
 // The points of the first keyframe, by its patches.
@@ -27,7 +27,7 @@ const Searched& room() {
       const PointObservation* seen = findObservation(source, id);
       if (!seen) continue;
       const Measurement& m = seen->measurement;
-      result.points.push_back({id, worldPosition(result.map, point), source.images, source.world_T_camera,
+      result.points.push_back({id, worldPosition(result.map, point), source.images.get(), source.world_T_camera,
                                m.pixel.cast<float>(), m.normal.cast<float>(), seen->corner,
                                static_cast<float>(m.sigma_normal), static_cast<float>(m.sigma_tangent)});
     }
@@ -94,7 +94,7 @@ TEST(MapSearch, BehindBesideAndFromTheOtherSideNothingIsVisible) {
   EXPECT_EQ(visibleFrom({rotationExp({0, M_PI, 0}), Eigen::Vector3d::Zero()}), 0U);
   EXPECT_EQ(visibleFrom({rotationExp({0, M_PI, 0}), {0, 0, 8}}), 0U) << "through the wall, from behind";
   EXPECT_EQ(visibleFrom({Eigen::Quaterniond::Identity(), {0, 0, -12}}), 0U) << "four times as far";
-  std::vector<SearchPoint> without_images = room().points;
+  SearchPoints without_images = room().points;
   for (SearchPoint& point : without_images) point.source_images = nullptr;
   EXPECT_TRUE(visiblePoints(placeCamera(), without_images, Pose(), {}).empty());
 }
@@ -103,7 +103,7 @@ TEST(MapSearch, NormalsTurnWithTheImage) {
   const double roll = 20 * degree;
   const Pose rolled{rotationExp({0, 0, roll}), Eigen::Vector3d::Zero()};
   const Eigen::Matrix2f turn = Eigen::Rotation2Df(static_cast<float>(-roll)).toRotationMatrix();
-  const std::vector<VisiblePoint> visible = visiblePoints(placeCamera(), room().points, rolled, {});
+  const VisiblePoints visible = visiblePoints(placeCamera(), room().points, rolled, {});
   ASSERT_GT(visible.size(), 100U);
   for (const VisiblePoint& point : visible) {
     EXPECT_GT(point.normal.dot(turn * room().points[point.index].source_normal), 0.98f);

@@ -62,7 +62,7 @@ TEST(PointFollowing, MedianDepthIsOfTheMapPointsAmongTheTracks) {
   view.keyframes = {{0, Pose(), nullptr}};
   for (int i = 0; i < 5; ++i) view.points.push_back(viewPoint(view, i, 0, {0, 0, 1.0 + i}));
   std::vector<Track> tracks;
-  for (const PointId id : {4, 9, 0, 1}) tracks.push_back(trackAt(id, {50, 50}));
+  for (const PointId id : {0, 1, 4, 9}) tracks.push_back(trackAt(id, {50, 50}));
   EXPECT_NEAR(medianDepth(tracks, view, Pose(), 7), 2, 1e-9);
   EXPECT_NEAR(medianDepth(tracks, view, {Eigen::Quaterniond::Identity(), {0, 0, -1}}, 7), 3, 1e-9);
   EXPECT_EQ(medianDepth({trackAt(9, {50, 50})}, view, Pose(), 7), 7);
@@ -103,8 +103,10 @@ class TrackFilters : public ::testing::Test {
     return match;
   }
 
-  std::vector<Track> filtered(const std::vector<Track>& tracks, const std::vector<FlowMatch>& matches) const {
-    return filterTracks(*from_, *to_, edges_, tracks, matches, options_);
+  std::vector<Track> filtered(const std::vector<Track>& tracks, const FlowMatches& matches) const {
+    std::vector<Track> kept;
+    filterTracks(*from_, *to_, edges_, tracks, matches, options_, kept);
+    return kept;
   }
 
   std::shared_ptr<const FrameImages> from_ = imagesWithLine(0), to_ = imagesWithLine(5);
@@ -181,7 +183,7 @@ TEST(PointFollowing, FollowsAPlaneFromOnePoseToTheNext) {
   const Pose next{rotationExp({0.01, 0.015, 0.02}), {0.03, -0.02, 0.02}};
   const auto from = imagesOf(plane.render(camera, Pose())), to = imagesOf(plane.render(camera, next));
   std::vector<Track> tracks;
-  std::vector<Eigen::Vector2f> expected, predictions;
+  Pixels expected, predictions;
   for (float y = 30; y < 210; y += 15) {
     for (float x = 30; x < 290; x += 15) {
       tracks.push_back(trackAt(static_cast<PointId>(tracks.size()), {x, y}));

@@ -10,7 +10,7 @@ namespace {
 struct TwoViews {
   Camera camera = smallCamera();
   ImagePyramid from, to;
-  std::vector<AlignmentPoint> points;
+  AlignmentPoints points;
   Pose to_T_from;
 };
 

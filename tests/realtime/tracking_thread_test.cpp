@@ -1,0 +1,137 @@
+// On the way from a frame to its pose there is no allocation, no lock and no system call but the clock (design, section
+// 4): the tracking thread of a live run is watched over whole sequences, with losses and what follows.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+
+#include "dataset/frame_source.h"
+#include "dataset/simulator.h"
+#include "pipeline/live_run.h"
+#include "realtime/watched_thread.h"
+
+namespace edgeslam {
+namespace {
+
+struct WatchedRun {
+  Trespasses trespasses;
+  int good = 0, lost = 0, found_again = 0;
+};
+
+// Stands for the flight recorder.
+class NoRecorder : public DecisionSink {
+ public:
+  void tookUpdate(std::int64_t, std::int64_t) noexcept override {}
+  void appliedCorrection(std::int64_t, std::int64_t) noexcept override {}
+  void passedOver(std::int64_t, std::int64_t) noexcept override {}
+  void processed(const std::shared_ptr<const FrameImages>& images) noexcept override { last_ = images; }
+  void unreadable(std::int64_t, std::int64_t, const std::string&) noexcept override {}
+
+ private:
+  std::shared_ptr<const FrameImages> last_;
+};
+
+// Each frame waits until the one before is done with, so that none is passed over.
+void feed(LiveRun& run, std::int64_t index, std::int64_t time_ns, const cv::Mat& grey, const std::string& problem) {
+  FrameSlot& slot = run.nextSlot();
+  slot.index = index;
+  slot.time_ns = time_ns;
+  slot.problem = problem;
+  if (problem.empty()) grey.copyTo(slot.grey);
+  run.handOver();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (run.counts().processed + run.counts().passed_over < run.counts().captured &&
+         std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+}
+
+template <typename FeedAll>
+WatchedRun watch(const Camera& camera, const FeedAll& feedAll) {
+  WatchedRun result;
+  LiveObserver observer;
+  observer.frame = [&](const FrameResult& frame, const std::string&) {
+    result.good += isGoodPose(frame.state);
+    result.lost += frame.state == TrackingState::lost;
+    result.found_again += frame.state == TrackingState::relocalised || frame.state == TrackingState::recovered;
+  };
+  NoRecorder recorder;
+  LiveOptions options;
+  watchThreadNamed(options.tracking.name);
+  LiveRun run(camera, Settings(), options, observer, &recorder);
+  run.start();
+  feedAll(run);
+  result.trespasses = takeTrespasses();
+  run.stop(/*settle=*/false);
+  return result;
+}
+
+void expectNone(const Trespasses& trespasses) {
+  EXPECT_EQ(trespasses.allocations, 0) << trespasses.where;
+  EXPECT_EQ(trespasses.releases, 0) << trespasses.where;
+  EXPECT_EQ(trespasses.locks, 0) << trespasses.where;
+  EXPECT_EQ(trespasses.system_calls, 0) << trespasses.where;
+}
+
+TEST(TrackingThread, TheWatchSeesWhatIsForbidden) {
+  if (!canWatchThreads()) GTEST_SKIP() << "not under sanitizers";
+  watchThreadNamed("trespasser");
+  std::thread thread([] {
+    pthread_setname_np(pthread_self(), "trespasser");
+    std::mutex mutex;
+    mutex.lock();
+    mutex.unlock();
+    void* volatile memory = std::malloc(100);
+    std::free(memory);
+    [[maybe_unused]] const auto parent = getppid();
+  });
+  thread.join();
+  const Trespasses seen = takeTrespasses();
+  EXPECT_GE(seen.allocations, 1);
+  EXPECT_GE(seen.releases, 1);
+  EXPECT_EQ(seen.locks, 1);
+  EXPECT_EQ(seen.system_calls, 1);
+  EXPECT_NE(seen.where, "");
+}
+
+TEST(TrackingThread, NeitherAllocatesNorLocksNorCallsTheSystem) {
+  if (!canWatchThreads()) GTEST_SKIP() << "not under sanitizers";
+  SimulationOptions simulation;
+  simulation.scene = SceneKind::room;
+  simulation.frames = 200;
+  simulation.width = 320;
+  simulation.height = 240;
+  simulation.speed = 1.5;
+  simulation.covered = {{90, 40}};
+  simulation.shaken = {{60, 4}};
+  const SimulatedSequence sequence = makeSequence(simulation);
+  const WatchedRun run = watch(sequence.camera, [&](LiveRun& live) {
+    for (int i = 0; i < sequence.size(); ++i) {
+      const SimulatedFrame frame = sequence.frame(i);
+      feed(live, i, frame.time_ns, frame.grey, i == 70 ? "torn" : "");
+    }
+  });
+  expectNone(run.trespasses);
+  EXPECT_GT(run.good, 40);
+}
+
+// Real images, with losses and relocalisations among them.
+TEST(TrackingThread, OnRealImagesLikewise) {
+  if (!canWatchThreads()) GTEST_SKIP() << "not under sanitizers";
+  const std::filesystem::path folder =
+      std::filesystem::path(EDGESLAM_SOURCE_DIR).parent_path() / "shared" / "data" / "kitchen_real";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared sequences here: " << folder;
+  const std::unique_ptr<FrameSource> source = openFrameSource(folder.string());
+  const WatchedRun run = watch(*source->camera(), [&](LiveRun& live) {
+    while (const std::optional<Frame> frame = source->next()) feed(live, frame->index, frame->time_ns, frame->grey, "");
+  });
+  expectNone(run.trespasses);
+  EXPECT_GT(run.good, 500);
+  EXPECT_GT(run.lost + run.found_again, 0) << "a sequence without losses proves less";
+}
+
+}  // namespace
+}  // namespace edgeslam
