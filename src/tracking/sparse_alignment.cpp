@@ -21,11 +21,10 @@ struct Patch {
 
 using Patches = std::pmr::vector<Patch>;
 
-Patches makePatches(const Camera& camera, const cv::Mat& image, int level, const AlignmentPoints& points,
-                    std::pmr::memory_resource* memory) {
+void makePatches(const Camera& camera, const cv::Mat& image, int level, const AlignmentPoints& points,
+                 Patches& patches) {
   const double scale = 1.0 / (1 << level);
-  Patches patches(memory);
-  patches.reserve(points.size());
+  patches.clear();
   for (const AlignmentPoint& point : points) {
     Patch& patch = patches.emplace_back();
     const Eigen::Vector2f pixel = point.pixel * static_cast<float>(scale);
@@ -40,7 +39,6 @@ Patches makePatches(const Camera& camera, const cv::Mat& image, int level, const
     const Eigen::Matrix2d tensor = patch.appearance.normal_matrix.topLeftCorner<2, 2>().cast<double>();
     patch.information.noalias() = patch.pixel_by_motion.transpose() * (tensor * patch.pixel_by_motion);
   }
-  return patches;
 }
 
 struct Comparison {
@@ -79,10 +77,12 @@ Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePy
                    const SparseAlignmentOptions& options, std::pmr::memory_resource* memory) {
   Pose to_T_from = first_start;
   bool compared = false;
+  Patches patches(memory);
+  patches.reserve(points.size());
   for (int level = options.coarsest_level; level >= options.finest_level; --level) {
     const auto index = static_cast<std::size_t>(level);
     if (index >= from.levels.size() || index >= to.levels.size()) continue;
-    const Patches patches = makePatches(camera, from.levels[index], level, points, memory);
+    makePatches(camera, from.levels[index], level, points, patches);
     Comparison best = compare(camera, patches, to.levels[index], level, to_T_from, options.huber);
     if (!compared) {
       const Comparison other = compare(camera, patches, to.levels[index], level, second_start, options.huber);

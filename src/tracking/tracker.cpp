@@ -10,7 +10,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::size_t scratch_size = std::size_t{8} << 20;  // three times what frames of 640 x 480 were seen to need
+constexpr std::size_t scratch_size = std::size_t{8} << 20;  // twice what frames of 640 x 480 were seen to need
 constexpr int images_at_start = 8;
 constexpr int edge_maps = 5;  // the current, the last, the lost and the kept frame's, and one that mapping looks at
 constexpr std::size_t most_found_again = 4096;
@@ -61,7 +61,6 @@ void Tracker::takeMemory() {
 
 void Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, TrackingOutcome& outcome) {
   clear(outcome);
-  scratch_.release();
   lost_.images.reset();
   StageClock clock(outcome.times);
   prepare(frame_index, time_ns, grey, clock);
@@ -119,6 +118,7 @@ bool Tracker::isLost(std::int64_t time_ns) const {
 
 // The last frame's tracks followed into this one, and its pose from them (P5, P6, P16, P17).
 bool Tracker::followAndLocate(StageClock& clock) {
+  scratch_.release();
   const FrameImages& from = *last_.images;
   const FrameImages& to = *frame_.images;
   const double scene_depth = medianDepth(last_.tracks, view_, last_.world_T_camera, 1.0, &scratch_);
@@ -200,6 +200,7 @@ void Tracker::dropOutliers(const FramePose& pose) {
 }
 
 void Tracker::reuseMap(TrackedState& frame) {
+  scratch_.release();
   reuseMapPoints(camera_, view_, *frame.images, *frame.edges, frame.world_T_camera,
                  static_cast<std::size_t>(options_.points.count), options_.map_reuse, frame.tracks, &scratch_);
 }
@@ -230,7 +231,7 @@ void Tracker::skip(std::int64_t time_ns, const std::string& reason, TrackingOutc
   predict(time_ns, reason, outcome);
 }
 
-void Tracker::predict(std::int64_t time_ns, const std::string& reason, TrackingOutcome& outcome) const {
+void Tracker::predict(std::int64_t time_ns, std::string_view reason, TrackingOutcome& outcome) const {
   outcome.reason = reason;
   if (!last_.images || !view_.initialised) return;
   outcome.state = FrameState::predicted;

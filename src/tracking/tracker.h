@@ -6,6 +6,7 @@
 
 #include <memory_resource>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edges/blur_gate.h"
@@ -129,7 +130,7 @@ class Tracker {
   void dropOutliers(const FramePose& estimate);
   void reuseMap(TrackedState& frame);
   void report(TrackingOutcome& outcome) const;
-  void predict(std::int64_t time_ns, const std::string& reason, TrackingOutcome& outcome) const;
+  void predict(std::int64_t time_ns, std::string_view reason, TrackingOutcome& outcome) const;
   void lose(std::int64_t time_ns, const char* reason, TrackingOutcome& outcome);
   Pose predictPose(std::int64_t time_ns) const;
   void remember();
