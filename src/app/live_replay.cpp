@@ -16,14 +16,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+std::int64_t bytesOf(double megabytes) { return static_cast<std::int64_t>(megabytes * (1 << 20)); }
+
 // Hands the run's decisions to the flight recorder.
 class Recorder : public DecisionSink {
  public:
-  Recorder(const std::string& folder, const RecordingDescription& description) : thread_(folder, description) {}
+  Recorder(const std::string& folder, const RecordingDescription& description, const RecordingSpace& space)
+      : thread_(folder, description, {bytesOf(space.most_megabytes), bytesOf(space.kept_free_megabytes)}) {}
 
   void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept override {
     postNumbered(DecisionKind::update, frame_index, number);
   }
+  void mappingBusy(std::int64_t frame_index) noexcept override { postNumbered(DecisionKind::busy, frame_index, 0); }
   void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override {
     postNumbered(DecisionKind::correction, message, number);
   }
@@ -59,8 +63,16 @@ class Recorder : public DecisionSink {
   RecordingThread thread_;
 };
 
+// One line for all that was not allowed.
+void tell(const std::vector<std::string>& problems) {
+  if (problems.empty()) return;
+  std::cerr << "edgeslam: runs on without ";
+  for (const std::string& problem : problems) std::cerr << (&problem == &problems.front() ? "" : "; ") << problem;
+  std::cerr << " (threads: in the configuration)\n";
+}
+
 // Each frame at its time.
-void feed(FrameSource& source, const Camera& camera, LiveRun& run) {
+void feed(FrameSource& source, const Camera& camera, double pace, LiveRun& run) {
   std::optional<Clock::time_point> start;
   std::int64_t first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
@@ -73,7 +85,8 @@ void feed(FrameSource& source, const Camera& camera, LiveRun& run) {
     slot.time_ns = frame->time_ns;
     slot.problem = frameProblem(*frame, camera);
     if (slot.problem.empty()) frame->grey.copyTo(slot.grey);
-    std::this_thread::sleep_until(*start + std::chrono::nanoseconds(frame->time_ns - first_ns));
+    const auto since_start = static_cast<std::int64_t>(static_cast<double>(frame->time_ns - first_ns) / pace);
+    std::this_thread::sleep_until(*start + std::chrono::nanoseconds(since_start));
     run.handOver();
   }
 }
@@ -83,7 +96,8 @@ void feed(FrameSource& source, const Camera& camera, LiveRun& run) {
 LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Settings& settings,
                             const LiveReplay& replay) {
   std::unique_ptr<Recorder> recorder;
-  if (!replay.record_folder.empty()) recorder = std::make_unique<Recorder>(replay.record_folder, replay.description);
+  if (!replay.record_folder.empty())
+    recorder = std::make_unique<Recorder>(replay.record_folder, replay.description, settings.recording);
   RunRecord record(camera);
   LiveObserver observer;
   observer.frame = [&](const FrameResult& result, const std::string& problem) {
@@ -92,20 +106,26 @@ LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Set
   };
   observer.report = [&](const MappingReport& report) { record.add(report); };
 
-  LiveRun run(camera, settings, LiveOptions(), observer, recorder.get());
+  LiveRun run(camera, settings, liveOptions(settings.threads), observer, recorder.get());
   if (replay.map_in) {
     record.goOnFrom(replay.map_in->keyframes.back().id + 1);
     run.goOnWith(*replay.map_in);
   }
   run.start();
-  for (const std::string& problem : run.problems()) std::cerr << "edgeslam: " << problem << "\n";
-  feed(source, camera, run);
+  std::vector<std::string> problems = run.problems();
+  const std::string refused = setUpThread({"capture", settings.threads.capture_priority, 0, false, {}});
+  if (!refused.empty()) problems.push_back(refused);
+  tell(problems);
+  feed(source, camera, replay.pace, run);
+  setUpThread({"edgeslam", 0, 0, false, {}});
   run.stop(/*settle=*/true);
 
   LiveReplayResult result;
   const LiveCounts counts = run.counts();
   result.run = record.finish(run.mapper());
+  result.run.pace = replay.pace;
   result.run.dropped_frames = counts.passed_over;
+  result.run.thread_durations = run.durations();
   result.map = run.mapper().map();
   if (recorder) {
     const RecordingStatus status = recorder->stop();

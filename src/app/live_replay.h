@@ -16,6 +16,7 @@ namespace edgeslam {
 
 struct LiveReplay {
   std::optional<Map> map_in;
+  double pace = 1;                   // frames come so many times as fast as their time stamps say
   std::string record_folder;         // empty: not recorded
   RecordingDescription description;  // of the recording
   // Called for each frame, in order, by another thread.

@@ -59,7 +59,8 @@ void Tracker::takeMemory() {
   choosePoints(square, edges, occupied_, options_.points, choice_workspace_, chosen_);
 }
 
-void Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, TrackingOutcome& outcome) {
+void Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, bool mapping_busy,
+                    TrackingOutcome& outcome) {
   clear(outcome);
   lost_.images.reset();
   StageClock clock(outcome.times);
@@ -68,14 +69,14 @@ void Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
     if (lost_since_ns_ < 0) lost_since_ns_ = time_ns;
     return predict(time_ns, "blurred image", outcome);
   }
-  if (!last_.images && !view_.initialised) return startMap("first frame of the map", clock, outcome);
+  if (!last_.images && !view_.initialised) return startMap("first frame of the map", mapping_busy, clock, outcome);
 
   bool located = !isLost(time_ns) && followAndLocate(clock);
   if (!view_.initialised && (!located || static_cast<double>(frame_.tracks.size()) <
                                              options_.restart_share * static_cast<double>(tracks_at_start_))) {
-    return startMap("starting anew: too few of the first frame's points are left", clock, outcome);
+    return startMap("starting anew: too few of the first frame's points are left", mapping_busy, clock, outcome);
   }
-  if (view_.initialised && located) {
+  if (view_.initialised && located && !mapping_busy) {
     const KeyframeDecision decision = judge();
     if (decision.choice == KeyframeChoice::previous_frame) {
       becomeKeyframe(last_, decision.reason, outcome);
@@ -91,7 +92,7 @@ void Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
     reuseMap(frame_);
     clock.finished(Stage::map_reuse);
   }
-  report(outcome);
+  report(mapping_busy, outcome);
   remember();
 }
 
@@ -205,7 +206,7 @@ void Tracker::reuseMap(TrackedState& frame) {
                  static_cast<std::size_t>(options_.points.count), options_.map_reuse, frame.tracks, &scratch_);
 }
 
-void Tracker::report(TrackingOutcome& outcome) const {
+void Tracker::report(bool mapping_busy, TrackingOutcome& outcome) const {
   outcome.state = view_.initialised ? FrameState::tracking : FrameState::initialising;
   if (!view_.initialised) outcome.reason = view_.waiting_for;
   outcome.world_T_camera = frame_.world_T_camera;
@@ -214,7 +215,7 @@ void Tracker::report(TrackingOutcome& outcome) const {
   outcome.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * frame_.world_T_camera;
   outcome.tracked_points = static_cast<int>(frame_.tracks.size());
   outcome.mapped_points = frame_.inlier_count;
-  if (view_.initialised) return;
+  if (view_.initialised || mapping_busy) return;
   outcome.tells_mapping = true;
   describe(frame_, -1, "", outcome.for_mapping);
 }

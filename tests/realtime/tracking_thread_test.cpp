@@ -25,6 +25,7 @@ struct WatchedRun {
 class NoRecorder : public DecisionSink {
  public:
   void tookUpdate(std::int64_t, std::int64_t) noexcept override {}
+  void mappingBusy(std::int64_t) noexcept override {}
   void appliedCorrection(std::int64_t, std::int64_t) noexcept override {}
   void passedOver(std::int64_t, std::int64_t) noexcept override {}
   void processed(const std::shared_ptr<const FrameImages>& images) noexcept override { last_ = images; }

@@ -45,6 +45,7 @@ class KeptDecisions : public DecisionSink {
   void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept override {
     decisions.updates[frame_index] = number;
   }
+  void mappingBusy(std::int64_t frame_index) noexcept override { decisions.mapping_busy.insert(frame_index); }
   void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override {
     decisions.corrections[message].push_back(number);
     decisions.snapshots.insert(number);
