@@ -10,6 +10,7 @@ namespace {
 
 constexpr auto idle_time = std::chrono::milliseconds(1);
 constexpr std::size_t longest_reason = 256;
+constexpr std::size_t most_waiting_for_a_map = 3;
 constexpr std::size_t least_room = 8;  // in mapping's queue, for a frame to tell it anything
 
 std::int64_t steadyNow_ns() {
@@ -166,7 +167,7 @@ void LiveRun::trackFrame(FrameSlot& slot) {
     if (sink_) sink_->passedOver(passed_over.index, passed_over.time_ns);
   }
   takeUpdate(slot.index);
-  const bool mapping_busy = messages_.room() < least_room;
+  const bool mapping_busy = isMappingBusy();
   if (mapping_busy) mapping_behind_.fetch_add(1, std::memory_order_relaxed);
   if (mapping_busy && sink_) sink_->mappingBusy(slot.index);
   new_messages_.clear();
@@ -192,6 +193,12 @@ void LiveRun::trackFrame(FrameSlot& slot) {
   if (sink_ && slot.problem.empty()) sink_->processed(tracking_.images());
   if (sink_ && !slot.problem.empty()) sink_->unreadable(slot.index, slot.time_ns, slot.problem);
   processed_.fetch_add(1, std::memory_order_relaxed);
+}
+
+// Before the map stands, what mapping makes of a frame is of use for as long as the first frame's points are in view.
+bool LiveRun::isMappingBusy() const {
+  if (!tracking_.hasMap()) return messages_.waiting() > most_waiting_for_a_map;
+  return messages_.room() < least_room;
 }
 
 void LiveRun::takeUpdate(std::int64_t frame_index) {

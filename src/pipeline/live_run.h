@@ -99,6 +99,7 @@ class LiveRun {
 
   void track();
   void trackFrame(FrameSlot& slot);
+  bool isMappingBusy() const;
   void takeUpdate(std::int64_t frame_index);
   void tellApplied();
   void map();

@@ -29,6 +29,9 @@ class TrackingWorker {
   // A frame that could not be read.
   const FrameResult& skip(std::int64_t index, std::int64_t time_ns, const std::string& problem);
 
+  // False while a map is being started.
+  bool hasMap() const { return tracker_.view().initialised; }
+
   // Of the frame processed last; shared and never changed again.
   const std::shared_ptr<const FrameImages>& images() const { return tracker_.latestImages(); }
 

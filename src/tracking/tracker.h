@@ -37,7 +37,7 @@ struct TrackerOptions {
   MapReuseOptions map_reuse;
   KeyframeOptions keyframes;
   int fewest_tracks = 30;      // fewer are not enough to start a map with
-  double restart_share = 0.5;  // of the first frame's tracks: fewer left, and the initialisation starts anew
+  double restart_share = 0.3;  // of the first frame's tracks: fewer left, and the initialisation starts anew
   int outlier_frames = 4;      // a track whose map point misses the pose so often in a row is dropped
   // The first pose after a loss or blur needs a good part of the points that the last good pose had ...
   double regain_points_share = 0.7;
