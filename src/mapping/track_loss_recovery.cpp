@@ -70,7 +70,7 @@ double medianParallax(const std::vector<Track3>& tracks, const LocalStructure& l
 }
 
 PoseObservations observationsInFirst(const std::vector<Track3>& tracks, const LocalStructure& local,
-                                                 const std::vector<char>& taken) {
+                                     const std::vector<char>& taken) {
   PoseObservations observations;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!taken[i]) continue;

@@ -48,8 +48,7 @@ class Cells {
 
 }  // namespace
 
-double explainedShare(const EdgeMap& edges, const VisiblePoints& visible,
-                      const ExplainedEdgesOptions& options) {
+double explainedShare(const EdgeMap& edges, const VisiblePoints& visible, const ExplainedEdgesOptions& options) {
   if (edges.points.empty()) return 0;
   const Cells cells(edges.index.size(), options.distance, visible);
   const auto across = static_cast<float>(options.across), distance = static_cast<float>(options.distance);

@@ -16,7 +16,6 @@ struct ExplainedEdgesOptions {
 };
 
 // Share of the frame's edge points that lie on an edge of the map's points in view; 0 without edges.
-double explainedShare(const EdgeMap& edges, const VisiblePoints& visible,
-                      const ExplainedEdgesOptions& options);
+double explainedShare(const EdgeMap& edges, const VisiblePoints& visible, const ExplainedEdgesOptions& options);
 
 }  // namespace edgeslam
