@@ -8,7 +8,8 @@ import re
 import sys
 import tempfile
 
-ORDER = ["image", "geometry", "edges", "flow", "map", "adjustment", "tracking", "mapping", "places", "pipeline", "dataset", "app"]
+ORDER = ["image", "geometry", "edges", "flow", "map", "adjustment", "tracking", "mapping", "places", "pipeline", "dataset", "drivers",
+         "app"]
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/]+)/')
 
 
