@@ -5,6 +5,7 @@
 
 #include "drivers/lcm/lcm_publisher.h"
 #include "drivers/lcm/messages.h"
+#include "drivers/lcm/start_check.h"
 #include "system/lcm/background_process.h"
 #include "system/lcm/own_network.h"
 #include "unit/lcm/made_frames.h"
@@ -200,6 +201,16 @@ TEST_F(LcmNetwork, ANetworkThatComesLaterIsUsed) {
     return publisher.counts().sent > 0;
   }));
   EXPECT_TRUE(comesTrue([&] { return publisher.listening(); }));
+}
+
+TEST_F(LcmNetwork, TheStartCheckFindsAMissingRoute) {
+  StartNeeds needs;
+  needs.lcm_url = "udpm://239.255.76.67:7667?ttl=1";
+  EXPECT_TRUE(startProblems(needs).empty());
+  ASSERT_TRUE(switchNetworkOff());
+  const std::vector<std::string> problems = startProblems(needs);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_NE(problems[0].find("ip route add 224.0.0.0/4 dev INTERFACE"), std::string::npos) << problems[0];
 }
 
 TEST_F(LcmNetwork, ListeningWithoutARouteSaysWhatToDo) {
