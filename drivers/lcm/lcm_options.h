@@ -13,6 +13,8 @@ struct LcmOptions {
   std::string url;
   // of multicast packets: 0 stays on this host, 1 reaches the local network; -1: as the URL says
   int time_to_live = -1;
+  // of the thread that sends: SCHED_FIFO, 1 to 99, where it is allowed; 0: the usual scheduling
+  int real_time_priority = 0;
   std::string pose_channel = "SLAM_POSE";
   std::string odometry_channel = "SLAM_REL_ODOMETRY";
   std::string state_channel = "SLAM_STATE";

@@ -1,5 +1,5 @@
 // The poses' way out: frames, status and map as LCM messages, and the robot's commands. Nothing here waits for a
-// receiver or for the network: what cannot be sent is counted, and sending is tried anew.
+// receiver or for the network: what cannot be sent, or not soon enough, is counted, and sending is tried anew.
 #pragma once
 
 #include <memory>
@@ -40,9 +40,10 @@ class LcmPublisher {
   // To be called once for every command.
   void answer(const Command& command, bool accepted, const std::string& message);
 
+  // As of now; messages that wait to be sent are not counted yet.
   LcmCounts counts() const;
   // Why messages do not go out at present, in one line with what to do; empty where they do.
-  const std::string& problem() const { return sender_.problem(); }
+  std::string problem() const { return sender_.problem(); }
   // True from when commands are heard.
   bool listening() const { return receiver_ && receiver_->listening(); }
 

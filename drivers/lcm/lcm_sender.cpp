@@ -5,8 +5,15 @@
 #include <cstring>
 
 #include "drivers/lcm/lcm_options.h"
+#include "pipeline/thread_setup.h"
 
 namespace edgeslam {
+namespace {
+
+constexpr std::size_t most_waiting = 128;  // [messages], some 40 frames
+constexpr std::chrono::milliseconds last_messages_time(200);
+
+}  // namespace
 
 LcmHandle openLcm(const std::string& url, std::string& problem) {
   if (const std::optional<MulticastGroup> group = multicastGroup(url)) {
@@ -25,26 +32,85 @@ void BackOff::failed(Clock::time_point now) {
 
 void BackOff::reset() { *this = BackOff(); }
 
-void LcmSender::sendBuffer(const std::string& channel) {
-  const bool failed_before = !problem_.empty();
-  if (!publish(channel)) {
-    ++not_sent_;
+LcmSender::LcmSender(std::string url, int real_time_priority)
+    : url_(std::move(url)), real_time_priority_(real_time_priority), waiting_(most_waiting) {
+  sem_init(&handed_over_, 0, 0);
+  thread_ = std::thread([this] { run(); });
+}
+
+LcmSender::~LcmSender() {
+  stopping_.store(true, std::memory_order_release);
+  sem_post(&handed_over_);
+  thread_.join();
+  sem_destroy(&handed_over_);
+}
+
+// Null where the queue is full.
+LcmSender::Packet* LcmSender::claim() {
+  Packet* packet = waiting_.claim();
+  if (!packet) {
+    not_sent_.fetch_add(1, std::memory_order_relaxed);
+    overflowed_.store(true, std::memory_order_relaxed);
+  }
+  return packet;
+}
+
+void LcmSender::handOver(Packet* packet) {
+  waiting_.send(packet);
+  sem_post(&handed_over_);
+}
+
+std::string LcmSender::problem() const {
+  const std::lock_guard<std::mutex> lock(problem_mutex_);
+  if (!problem_.empty() || !overflowed_.load(std::memory_order_relaxed)) return problem_;
+  return "LCM: " + url_ + ": the network takes messages more slowly than they come";
+}
+
+void LcmSender::setProblem(const std::string& problem) {
+  const std::lock_guard<std::mutex> lock(problem_mutex_);
+  problem_ = problem;
+}
+
+// The thread.
+void LcmSender::run() {
+  setUpThread({"lcm", real_time_priority_, 0, false, {}});  // the start check has told what is not allowed
+  BackOff::Clock::time_point end = BackOff::Clock::time_point::max();
+  while (BackOff::Clock::now() < end) {
+    if (stopping_.load(std::memory_order_acquire)) end = std::min(end, BackOff::Clock::now() + last_messages_time);
+    if (Packet* packet = waiting_.receive()) {
+      deliver(*packet);
+      waiting_.release(packet);
+    } else if (stopping_.load(std::memory_order_acquire)) {
+      break;
+    } else {
+      while (sem_wait(&handed_over_) != 0 && errno == EINTR) continue;
+    }
+  }
+}
+
+void LcmSender::deliver(const Packet& packet) {
+  if (!publish(packet)) {
+    not_sent_.fetch_add(1, std::memory_order_relaxed);
+    failing_ = true;
     openWhenDue();
     return;
   }
-  ++sent_;
-  if (!failed_before) return;
-  ++comebacks_;
-  problem_.clear();
+  sent_.fetch_add(1, std::memory_order_relaxed);
+  if (waiting_.waiting() == 0) overflowed_.store(false, std::memory_order_relaxed);
+  if (!failing_) return;
+  failing_ = false;
   back_off_.reset();
+  setProblem("");
+  comebacks_.fetch_add(1, std::memory_order_relaxed);
 }
 
-bool LcmSender::publish(const std::string& channel) {
+bool LcmSender::publish(const Packet& packet) {
   if (!lcm_) openWhenDue();
   if (!lcm_) return false;
   errno = 0;
-  if (lcm_publish(lcm_.get(), channel.c_str(), buffer_.data(), static_cast<unsigned>(buffer_.size())) == 0) return true;
-  problem_ = "LCM: " + url_ + ": messages cannot be sent (" + std::strerror(errno) + ")";
+  const auto bytes = static_cast<unsigned>(packet.bytes.size());
+  if (lcm_publish(lcm_.get(), packet.channel.c_str(), packet.bytes.data(), bytes) == 0) return true;
+  setProblem("LCM: " + url_ + ": messages cannot be sent (" + std::strerror(errno) + ")");
   return false;
 }
 
@@ -58,7 +124,7 @@ void LcmSender::openWhenDue() {
   if (opened) {
     lcm_ = std::move(opened);
   } else {
-    problem_ = problem;
+    setProblem(problem);
   }
 }
 

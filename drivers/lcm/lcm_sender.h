@@ -2,12 +2,18 @@
 #pragma once
 
 #include <lcm/lcm.h>
+#include <semaphore.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include "pipeline/channel.h"
 
 namespace edgeslam {
 
@@ -33,37 +39,63 @@ class BackOff {
   Clock::duration wait_ = std::chrono::milliseconds(100);
 };
 
+// A thread of its own sends, so that a caller never waits: a slow link blocks the sender for seconds.
 class LcmSender {
  public:
-  // `url` from effectiveUrl(). Opens when the first message is sent.
-  explicit LcmSender(std::string url) : url_(std::move(url)) {}
+  // `url` from effectiveUrl(). `real_time_priority` of the thread: SCHED_FIFO, 1 to 99, where it is allowed; 0: the
+  // usual scheduling.
+  explicit LcmSender(std::string url, int real_time_priority = 0);
+  // Sends what waits, for at most 0.2 s or until the message that is being sent is out.
+  ~LcmSender();
+  LcmSender(const LcmSender&) = delete;
+  LcmSender& operator=(const LcmSender&) = delete;
 
-  // `Message`: a class by lcm-gen.
+  // For one thread. `Message`: a class by lcm-gen.
   template <class Message>
   void send(const std::string& channel, const Message& message) {
-    buffer_.resize(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(buffer_.data(), 0, static_cast<int>(buffer_.size()));
-    sendBuffer(channel);
+    Packet* packet = claim();
+    if (!packet) return;
+    packet->channel = channel;
+    packet->bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(packet->bytes.data(), 0, static_cast<int>(packet->bytes.size()));
+    handOver(packet);
   }
 
-  std::int64_t sent() const { return sent_; }
-  std::int64_t notSent() const { return not_sent_; }
+  // As of now; messages that wait are not counted yet.
+  std::int64_t sent() const { return sent_.load(std::memory_order_relaxed); }
+  std::int64_t notSent() const { return not_sent_.load(std::memory_order_relaxed); }
   // How often sending worked again after it had not.
-  std::int64_t comebacks() const { return comebacks_; }
-  // Why the last message was not sent, in one line; empty where it was.
-  const std::string& problem() const { return problem_; }
+  std::int64_t comebacks() const { return comebacks_.load(std::memory_order_relaxed); }
+  // Why messages do not go out at present, in one line; empty where they do.
+  std::string problem() const;
 
  private:
-  void sendBuffer(const std::string& channel);
-  bool publish(const std::string& channel);
-  void openWhenDue();
+  struct Packet {
+    std::string channel;
+    std::vector<std::uint8_t> bytes;
+  };
 
-  std::string url_;
-  LcmHandle lcm_;
-  BackOff back_off_;
-  std::vector<std::uint8_t> buffer_;
+  Packet* claim();
+  void handOver(Packet* packet);
+  void run();
+  void deliver(const Packet& packet);
+  bool publish(const Packet& packet);
+  void openWhenDue();
+  void setProblem(const std::string& problem);
+
+  const std::string url_;
+  const int real_time_priority_;
+  Channel<Packet> waiting_;
+  sem_t handed_over_;
+  std::atomic<bool> stopping_{false}, overflowed_{false};
+  std::atomic<std::int64_t> sent_{0}, not_sent_{0}, comebacks_{0};
+  mutable std::mutex problem_mutex_;  // taken where the problem changes and where it is asked for
   std::string problem_;
-  std::int64_t sent_ = 0, not_sent_ = 0, comebacks_ = 0;
+
+  LcmHandle lcm_;  // these are the thread's
+  BackOff back_off_;
+  bool failing_ = false;
+  std::thread thread_;
 };
 
 }  // namespace edgeslam

@@ -7,26 +7,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <functional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "unit/dataset/temporary_folder.h"
+#include "unit/lcm/comes_true.h"
 
 namespace edgeslam {
-
-// Asks until it is so, or for so long; for what happens soon, on a loaded machine, too.
-inline bool comesTrue(const std::function<bool()>& condition, double seconds = 30) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return true;
-}
 
 class BackgroundProcess {
  public:

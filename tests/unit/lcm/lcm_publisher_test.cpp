@@ -8,6 +8,7 @@
 
 #include "drivers/lcm/messages.h"
 #include "unit/dataset/temporary_folder.h"
+#include "unit/lcm/comes_true.h"
 #include "unit/lcm/made_frames.h"
 
 namespace edgeslam {
@@ -51,7 +52,7 @@ TEST(LcmPublisher, EveryFrameIsToldAndMeasuredOnesAsPoses) {
       publisher.frame(measuredFrame(i, {Eigen::Quaterniond::Identity(), {0.1 * i, 0, 0}}));
     }
     publisher.frame(frameWithoutPose(4, TrackingState::lost, "dark"));
-    EXPECT_EQ(publisher.counts().sent, 13);
+    EXPECT_TRUE(comesTrue([&] { return publisher.counts().sent == 13; }));
     EXPECT_EQ(publisher.counts().not_sent, 0);
     EXPECT_EQ(publisher.problem(), "");
     EXPECT_FALSE(publisher.nextCommand());
@@ -102,7 +103,7 @@ TEST(LcmPublisher, AMapGoesOutInPiecesBetweenTheFrames) {
     if (part.version == 2) {
       EXPECT_EQ(part.part, parts++);
     }
-    EXPECT_LE(++since_state, 8);
+    EXPECT_LE(++since_state, 4);
   }
   EXPECT_EQ(parts, 25);
 }
@@ -113,6 +114,7 @@ TEST(LcmPublisher, AStatusTellsWhatWasSent) {
   {
     LcmPublisher publisher(toFile(log), Pose());
     publisher.frame(measuredFrame(0, Pose()));
+    ASSERT_TRUE(comesTrue([&] { return publisher.counts().sent == 3; }));
     PublisherStatus status;
     status.keyframes = 5;
     publisher.status(status);
@@ -131,8 +133,8 @@ TEST(LcmPublisher, AStatusTellsWhatWasSent) {
 TEST(LcmPublisher, WhatCannotBeSentIsCountedAndToldWhy) {
   LcmPublisher publisher(toFile("/no/such/folder/log"), Pose());
   for (int i = 0; i < 5; ++i) publisher.frame(measuredFrame(i, Pose()));
+  EXPECT_TRUE(comesTrue([&] { return publisher.counts().not_sent == 15; }));
   EXPECT_EQ(publisher.counts().sent, 0);
-  EXPECT_EQ(publisher.counts().not_sent, 15);
   EXPECT_NE(publisher.problem().find("/no/such/folder/log"), std::string::npos);
 }
 
