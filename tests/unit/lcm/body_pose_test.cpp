@@ -121,6 +121,17 @@ TEST(BodyMotion, ACorrectionOfTheMapIsNoMotion) {
   expectSame(motion->before_T_now, Pose(), 1e-12);
 }
 
+TEST(BodyMotion, OfPosesOnTwoKeyframesIsTheWorlds) {
+  Random random(17);
+  FrameResult first = measuredFrame(0, randomPose(random)), second = measuredFrame(1, randomPose(random));
+  first.reference = 3;
+  second.reference = 4;
+  first.reference_T_camera = second.reference_T_camera = randomPose(random);
+  const std::optional<BodyMotion> motion = bodyMotion(*measuredPose(first), *measuredPose(second), {});
+  ASSERT_TRUE(motion);
+  expectSame(motion->before_T_now, first.world_T_camera.inverse() * second.world_T_camera, 1e-12);
+}
+
 TEST(BodyMotion, TooLongAgoOrBackwardsIsNone) {
   const MeasuredPose before = *measuredPose(measuredFrame(10, Pose()));
   EXPECT_FALSE(bodyMotion(before, before, {}));

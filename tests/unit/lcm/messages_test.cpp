@@ -99,9 +99,9 @@ TEST(Messages, UpdateIsReadByThePublishedType) {
 TEST(Messages, TwistIsOfTheBodyInItsOwnFrame) {
   Random random(3);
   for (int i = 0; i < 30; ++i) {
-    // The body moves at a constant twist; the camera sits anywhere on it.
+    // The camera sits anywhere on the body; the velocity is told in the later body's frame.
     const RobotSetup robot = metricRobot(randomPose(random), random.uniform(0.2, 3));
-    const Eigen::Vector3d velocity = random.vector(1), rate = random.vector(1);
+    const Eigen::Vector3d velocity = random.vector(1), rate = random.vector(10);
     const double dt = 1e-9 * static_cast<double>(frame_interval_ns);
     const Pose body_T_camera = robot.body_T_camera;
     const auto cameraAt = [&](const Pose& local_T_body) {
@@ -110,14 +110,47 @@ TEST(Messages, TwistIsOfTheBodyInItsOwnFrame) {
       return pose;
     };
     const Pose first = randomPose(random);
-    const Pose second = first * Pose{rotationExp(rate * dt), velocity * dt};
+    const Eigen::Quaterniond turn = rotationExp(rate * dt);
+    const Pose second = first * Pose{turn, turn * (velocity * dt)};
     const FrameMessages messages =
         messagesOf(measuredFrame(1, cameraAt(second)), robot, measuredFrame(0, cameraAt(first)));
     ASSERT_TRUE(messages.state.has_twist);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(messages.state.rotation_rate[k], rate[k], 1e-6);
-      EXPECT_NEAR(messages.state.velocity[k], velocity[k], 1.1 * rate.norm() * dt * velocity.norm() + 1e-9);
+      EXPECT_NEAR(messages.state.velocity[k], velocity[k], 1e-9);
     }
+  }
+}
+
+TEST(Messages, AStateTellsBodyAndCameraWithPositiveW) {
+  Random random(4);
+  for (int i = 0; i < 20; ++i) {
+    FrameResult frame = measuredFrame(6, randomPose(random));
+    if (i % 2) frame.world_T_camera.rotation.coeffs() *= -1;  // the same rotation
+    const RobotSetup robot = metricRobot(randomPose(random), 0.5);
+    const state_t state = messagesOf(frame, robot).state;
+    const Pose body = bodyPose(frame.world_T_camera, robot);
+    EXPECT_LT(rotationAngle({state.orientation[0], state.orientation[1], state.orientation[2], state.orientation[3]},
+                            body.rotation),
+              1e-7);
+    EXPECT_LT(rotationAngle({state.camera_orientation[0], state.camera_orientation[1], state.camera_orientation[2],
+                             state.camera_orientation[3]},
+                            frame.world_T_camera.rotation),
+              1e-7);
+    EXPECT_GE(state.orientation[0], 0);
+    EXPECT_GE(state.camera_orientation[0], 0);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(state.position[k], body.translation[k], 1e-12);
+      EXPECT_NEAR(state.camera_position[k], 0.5 * frame.world_T_camera.translation[k], 1e-12);
+    }
+    const Matrix6d covariance = bodyCovariance(frame.covariance, robot);
+    EXPECT_EQ(state.covariance[1][4], covariance(1, 4));
+    EXPECT_EQ(state.sequence, 7);
+    EXPECT_EQ(state.frame, 6);
+    EXPECT_EQ(state.publish_utime, 1234);
+    EXPECT_EQ(state.points_tracked, 400);
+    EXPECT_EQ(state.points_mapped, 200);
+    EXPECT_EQ(state.latency_ms, 12);
   }
 }
 
