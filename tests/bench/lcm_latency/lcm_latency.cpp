@@ -87,6 +87,9 @@ int publish(int count, double rate_hz) {
     publisher.frame(frame);
     call_us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - called).count());
   }
+  while (publisher.counts().sent + publisher.counts().not_sent < 3LL * count) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   printLatencies("the publisher's call", call_us);
   std::printf("messages: %lld sent, %lld not\n", static_cast<long long>(publisher.counts().sent),
               static_cast<long long>(publisher.counts().not_sent));
