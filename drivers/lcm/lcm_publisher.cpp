@@ -29,7 +29,7 @@ LcmPublisher::LcmPublisher(const LcmOptions& options, const Pose& body_T_camera)
 }
 
 void LcmPublisher::frame(const FrameResult& result) {
-  const FrameMessages messages = frameMessages(result, robot_, before_, states_++, realUtime());
+  const PublishedFrame messages = frameMessages(result, robot_, before_, states_++, realUtime());
   if (messages.pose) sender_.send(options_.pose_channel, *messages.pose);
   sender_.send(options_.state_channel, messages.state);
   sender_.send(options_.odometry_channel, messages.update);

@@ -98,16 +98,16 @@ update_t updateMessage(const FrameResult& result, const std::optional<BodyMotion
 
 }  // namespace
 
-FrameMessages frameMessages(const FrameResult& result, const RobotSetup& robot,
-                            const std::optional<MeasuredPose>& before, std::int64_t sequence,
-                            std::int64_t publish_utime) {
+PublishedFrame frameMessages(const FrameResult& result, const RobotSetup& robot,
+                             const std::optional<MeasuredPose>& before, std::int64_t sequence,
+                             std::int64_t publish_utime) {
   const std::optional<MeasuredPose> now = measuredPose(result);
   std::optional<BodyMotion> motion;
   if (now && before) motion = bodyMotion(*before, *now, robot);
   Twist twist;
   if (motion) twist = twistOf(*motion);
 
-  FrameMessages messages;
+  PublishedFrame messages;
   messages.state = stateMessage(result, robot, motion ? &twist : nullptr);
   messages.state.sequence = sequence;
   messages.state.publish_utime = publish_utime;

@@ -11,7 +11,7 @@
 
 namespace edgeslam {
 
-struct FrameMessages {
+struct PublishedFrame {
   state_t state;               // every frame
   std::optional<pose_t> pose;  // of a measured pose alone
   update_t update;             // every frame
@@ -19,9 +19,9 @@ struct FrameMessages {
 
 // `before`: the latest measured pose of an earlier frame, if any. A pose that is not finite is told as lost.
 // `publish_utime`: CLOCK_REALTIME [us].
-FrameMessages frameMessages(const FrameResult& result, const RobotSetup& robot,
-                            const std::optional<MeasuredPose>& before, std::int64_t sequence,
-                            std::int64_t publish_utime);
+PublishedFrame frameMessages(const FrameResult& result, const RobotSetup& robot,
+                             const std::optional<MeasuredPose>& before, std::int64_t sequence,
+                             std::int64_t publish_utime);
 
 // state_t's numbers.
 std::int8_t stateNumber(TrackingState state);
