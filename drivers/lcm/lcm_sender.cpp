@@ -10,8 +10,9 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::size_t most_waiting = 128;  // [messages], some 40 frames
-constexpr std::chrono::milliseconds last_messages_time(200);
+constexpr std::size_t most_waiting = 1024;              // [messages]
+constexpr std::chrono::milliseconds longest_wait(500);  // older messages are of no use to a controller
+constexpr std::chrono::milliseconds time_at_the_end(500);
 
 }  // namespace
 
@@ -48,14 +49,17 @@ LcmSender::~LcmSender() {
 // Null where the queue is full.
 LcmSender::Packet* LcmSender::claim() {
   Packet* packet = waiting_.claim();
-  if (!packet) {
-    not_sent_.fetch_add(1, std::memory_order_relaxed);
-    overflowed_.store(true, std::memory_order_relaxed);
-  }
+  if (!packet) leaveOut();
   return packet;
 }
 
+void LcmSender::leaveOut() {
+  not_sent_.fetch_add(1, std::memory_order_relaxed);
+  overflowed_.store(true, std::memory_order_relaxed);
+}
+
 void LcmSender::handOver(Packet* packet) {
+  packet->handed_over = BackOff::Clock::now();
   waiting_.send(packet);
   sem_post(&handed_over_);
 }
@@ -76,7 +80,7 @@ void LcmSender::run() {
   setUpThread({"lcm", real_time_priority_, 0, false, {}});  // the start check has told what is not allowed
   BackOff::Clock::time_point end = BackOff::Clock::time_point::max();
   while (BackOff::Clock::now() < end) {
-    if (stopping_.load(std::memory_order_acquire)) end = std::min(end, BackOff::Clock::now() + last_messages_time);
+    if (stopping_.load(std::memory_order_acquire)) end = std::min(end, BackOff::Clock::now() + time_at_the_end);
     if (Packet* packet = waiting_.receive()) {
       deliver(*packet);
       waiting_.release(packet);
@@ -89,6 +93,10 @@ void LcmSender::run() {
 }
 
 void LcmSender::deliver(const Packet& packet) {
+  if (BackOff::Clock::now() - packet.handed_over > longest_wait) {
+    leaveOut();
+    return;
+  }
   if (!publish(packet)) {
     not_sent_.fetch_add(1, std::memory_order_relaxed);
     failing_ = true;

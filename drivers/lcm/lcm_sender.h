@@ -39,13 +39,14 @@ class BackOff {
   Clock::duration wait_ = std::chrono::milliseconds(100);
 };
 
-// A thread of its own sends, so that a caller never waits: a slow link blocks the sender for seconds.
+// A thread of its own sends, so that a caller never waits: a slow link blocks the sender for seconds. What has waited
+// for over 0.5 s is left out and counted: the newest messages win.
 class LcmSender {
  public:
   // `url` from effectiveUrl(). `real_time_priority` of the thread: SCHED_FIFO, 1 to 99, where it is allowed; 0: the
   // usual scheduling.
   explicit LcmSender(std::string url, int real_time_priority = 0);
-  // Sends what waits, for at most 0.2 s or until the message that is being sent is out.
+  // Sends what waits, for at most 0.5 s or until the message that is being sent is out.
   ~LcmSender();
   LcmSender(const LcmSender&) = delete;
   LcmSender& operator=(const LcmSender&) = delete;
@@ -73,9 +74,11 @@ class LcmSender {
   struct Packet {
     std::string channel;
     std::vector<std::uint8_t> bytes;
+    BackOff::Clock::time_point handed_over;
   };
 
   Packet* claim();
+  void leaveOut();
   void handOver(Packet* packet);
   void run();
   void deliver(const Packet& packet);
