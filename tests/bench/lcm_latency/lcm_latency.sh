@@ -1,6 +1,7 @@
 #!/bin/bash
 # Latency and loss over LCM: loopback, two hosts (namespaces joined by a cable, ttl 1), and with 5 % of the packets lost.
 # As root, with iproute2 and nftables. usage: lcm_latency.sh PROGRAM [COUNT RATE_HZ]
+# UNDER='chrt --fifo 50' runs both ends at that priority, as the service does, where others use the machine, too.
 set -euo pipefail
 program=$(realpath "$1") count=${2:-100000} rate=${3:-1000}
 
@@ -29,10 +30,10 @@ measure() {
   shift 4
   echo "== $name: $messages frames at $at Hz, ttl $ttl"
   export LCM_DEFAULT_URL="udpm://239.255.76.67:7667?ttl=$ttl"
-  "$@" "$program" receive > "$folder/received" &
+  "$@" ${UNDER:-env} "$program" receive > "$folder/received" &
   local receiver=$!
   until grep -q ready "$folder/received"; do sleep 0.1; done
-  "$program" publish "$messages" "$at"
+  ${UNDER:-env} "$program" publish "$messages" "$at"
   wait $receiver
   grep -v ready "$folder/received"
 }
