@@ -135,7 +135,7 @@ TEST_F(LcmNetwork, HostileCommandsAreIgnoredAndCounted) {
   int taken = 0;
   while (publisher.nextCommand()) ++taken;
   EXPECT_GT(taken, 0);
-  EXPECT_LE(taken, 16);
+  EXPECT_LE(taken, 60) << "16 that waited, and the flood's tail that comes while they are taken";
 }
 
 TEST_F(LcmNetwork, NobodyNeedsToListen) {
