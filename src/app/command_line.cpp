@@ -12,6 +12,7 @@
 
 #include "app/check_config_command.h"
 #include "app/evaluate_command.h"
+#include "app/listen_command.h"
 #include "app/replay_command.h"
 #include "app/simulate_command.h"
 #include "edgeslam/input_error.h"
@@ -41,6 +42,7 @@ int parseAndRun(int argc, const char* const* argv) {
   addReplayCommand(app, exit_code);
   addEvaluateCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
+  addListenCommand(app, exit_code);
   addCheckConfigCommand(app, exit_code);
   try {
     app.parse(argc, argv);
