@@ -10,6 +10,7 @@ namespace edgeslam {
 namespace {
 
 constexpr std::uint32_t most_entries = 256;  // of any list
+constexpr std::size_t most_sizes = 40;       // in a text
 
 int pixels(std::uint32_t count) { return static_cast<int>(std::min<std::uint32_t>(count, 1 << 20)); }
 
@@ -114,20 +115,39 @@ std::string sizeText(const OfferedSize& size) {
   return text;
 }
 
-std::string listFormats(const std::vector<OfferedFormat>& formats, std::size_t most_sizes) {
-  std::string text;
+std::string listFormat(const OfferedFormat& format) {
+  std::string text = format.name;
+  for (std::size_t i = 0; i < std::min(format.sizes.size(), most_sizes); ++i) {
+    text += (i == 0 ? " " : ", ") + sizeText(format.sizes[i]);
+    if (!format.sizes[i].rates.empty()) text += " (" + listRates(format.sizes[i].rates) + " frames/s)";
+  }
+  return format.sizes.size() > most_sizes ? text + ", ..." : text;
+}
+
+std::string listSizes(const std::vector<OfferedFormat>& formats) {
+  std::vector<std::pair<std::string, std::string>> groups;  // sizes, formats
   for (const OfferedFormat& format : formats) {
     if (!format.format) continue;
-    text += (text.empty() ? "" : "; ") + format.name;
+    std::string sizes;
     for (std::size_t i = 0; i < std::min(format.sizes.size(), most_sizes); ++i) {
-      text += (i == 0 ? " " : ", ") + sizeText(format.sizes[i]);
-      std::string rates;
-      for (const double rate : format.sizes[i].rates) rates += (rates.empty() ? "" : ", ") + rateText(rate);
-      if (!rates.empty()) text += " (" + rates + " frames/s)";
+      sizes += (i == 0 ? " " : ", ") + sizeText(format.sizes[i]);
     }
-    if (format.sizes.size() > most_sizes) text += ", ...";
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == sizes; });
+    if (group == groups.end()) {
+      groups.emplace_back(sizes, format.name);
+    } else {
+      group->second += ", " + format.name;
+    }
   }
+  std::string text;
+  for (const auto& [sizes, names] : groups) text += (text.empty() ? "" : "; ") + names + sizes;
   return text.empty() ? "none that is known here" : text;
+}
+
+std::string listRates(const std::vector<double>& rates) {
+  std::string text;
+  for (const double rate : rates) text += (text.empty() ? "" : ", ") + rateText(rate);
+  return text;
 }
 
 }  // namespace edgeslam

@@ -34,11 +34,17 @@ std::vector<OfferedFormat> offeredFormats(const CaptureDevice& device);
 // Frame rates at this size, falling; empty where the driver does not tell.
 std::vector<double> offeredRates(const CaptureDevice& device, std::uint32_t code, int width, int height);
 
-// "GREY 640 x 480 (30, 15 frames/s), 320 x 240 (30 frames/s); YUYV 640 x 480"; sizes beyond `most_sizes` are left out.
-std::string listFormats(const std::vector<OfferedFormat>& formats, std::size_t most_sizes);
+// "GREY 640 x 480 (30, 15 frames/s), 320 x 240 (30 frames/s)"; sizes beyond the first 40 are left out.
+std::string listFormat(const OfferedFormat& format);
+
+// The formats that can be used with their sizes, for messages: "GREY, YUYV 640 x 480, 320 x 240; MJPEG 640 x 480";
+// those with the same sizes share them.
+std::string listSizes(const std::vector<OfferedFormat>& formats);
 
 // "640 x 480", "16 x 16 to 1920 x 1080".
 std::string sizeText(const OfferedSize& size);
+// "30, 15".
+std::string listRates(const std::vector<double>& rates);
 // "29.97", "30".
 std::string rateText(double rate);
 

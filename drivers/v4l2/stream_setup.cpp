@@ -108,14 +108,12 @@ V4l2Problem setRegion(const CaptureDevice& device, const cv::Rect& region) {
   return {};
 }
 
-// The fastest rate up to 30/s that the driver lists at this size; 0 where it lists none.
-double bestRate(const CaptureDevice& device, std::uint32_t code, const ImageFormat& image) {
-  const std::vector<double> rates =
-      offeredRates(device, code, static_cast<int>(image.width), static_cast<int>(image.height));
+// The fastest up to 30/s of the rates, which fall; 30/s where there are none.
+double bestRate(const std::vector<double>& rates) {
   const auto best =
       std::find_if(rates.begin(), rates.end(), [](double rate) { return rate <= usual_rate * (1 + rate_tolerance); });
   if (best != rates.end()) return *best;
-  return rates.empty() ? 0 : rates.back();
+  return rates.empty() ? usual_rate : rates.back();
 }
 
 std::string sizeText(std::uint32_t width, std::uint32_t height) {
@@ -124,7 +122,7 @@ std::string sizeText(std::uint32_t width, std::uint32_t height) {
 
 // Asks for one format at the size wanted; no problem where the driver took it all.
 SettledStream tryFormat(const CaptureDevice& device, const CameraOptions& options, const OfferedFormat& format,
-                        const ImageFormat& wanted) {
+                        const ImageFormat& wanted, const std::string& offers) {
   ImageFormat image = wanted;
   image.code = format.code;
   const std::string asked = device.path + ": " + format.name + " " + sizeText(wanted.width, wanted.height);
@@ -132,15 +130,16 @@ SettledStream tryFormat(const CaptureDevice& device, const CameraOptions& option
     return {{}, {asked + " is refused: " + errorText(error), mayHeal(error)}};
   }
   if (image.code != format.code || image.width != wanted.width || image.height != wanted.height) {
-    return {{}, {asked + " is refused, the camera would give " + sizeText(image.width, image.height), false}};
+    return {{}, {asked + " is refused, the camera would give " + sizeText(image.width, image.height) + offers, false}};
   }
-  const double listed = bestRate(device, format.code, image);
-  const double rate = options.frame_rate > 0 ? options.frame_rate : listed > 0 ? listed : usual_rate;
+  const std::vector<double> rates =
+      offeredRates(device, format.code, static_cast<int>(image.width), static_cast<int>(image.height));
+  const double rate = options.frame_rate > 0 ? options.frame_rate : bestRate(rates);
   const double given = setRate(device, rate);
   if (options.frame_rate > 0 && given > 0 && std::abs(given - rate) > rate_tolerance * rate) {
     return {{},
             {asked + " at " + rateText(rate) + " frames/s is refused, the camera would give " + rateText(given) +
-                 " frames/s",
+                 " frames/s" + (rates.empty() ? "" : "; it offers " + listRates(rates) + " frames/s"),
              false}};
   }
   // Some drivers change the size with the rate.
@@ -180,7 +179,7 @@ SettledStream settleStream(const CaptureDevice& device, const CameraOptions& opt
   if (options.height > 0) wanted.height = static_cast<std::uint32_t>(options.height);
 
   const std::vector<OfferedFormat> offered = offeredFormats(device);
-  const std::string offers = "; it offers " + listFormats(offered, 12);
+  const std::string offers = "; it offers " + listSizes(offered);
   const std::vector<OfferedFormat> formats = formatsToTry(offered, options.format);
   if (formats.empty()) {
     return {
@@ -192,7 +191,7 @@ SettledStream settleStream(const CaptureDevice& device, const CameraOptions& opt
   std::optional<std::size_t> best_format;
   V4l2Problem first_problem;
   for (std::size_t i = 0; i < formats.size(); ++i) {
-    const SettledStream tried = tryFormat(device, options, formats[i], wanted);
+    const SettledStream tried = tryFormat(device, options, formats[i], wanted, offers);
     if (!tried.problem.text.empty()) {
       if (first_problem.text.empty()) first_problem = tried.problem;
       continue;
@@ -204,8 +203,8 @@ SettledStream settleStream(const CaptureDevice& device, const CameraOptions& opt
     }
     if (options.frame_rate > 0 || best.setup.frame_rate >= usual_rate * (1 - rate_tolerance)) break;
   }
-  if (!best_format) return {{}, {first_problem.text + offers, first_problem.may_heal}};
-  return tryFormat(device, options, formats[*best_format], wanted);  // the last one tried may have been another
+  if (!best_format) return {{}, first_problem};
+  return tryFormat(device, options, formats[*best_format], wanted, offers);  // the last one tried may have been another
 }
 
 }  // namespace edgeslam

@@ -67,7 +67,7 @@ void appendCamera(std::string& text, const ListedCamera& camera) {
   indent(text, "formats:", 1);
   for (const OfferedFormat& format : camera.formats) {
     if (format.format) {
-      indent(text, listFormats({format}, most_sizes_shown), 2);
+      indent(text, listFormat(format), 2);
     } else {
       indent(text, format.name + " (cannot be used)", 2);
     }

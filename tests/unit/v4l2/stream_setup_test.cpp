@@ -66,14 +66,14 @@ TEST_F(StreamSetupTest, WhatIsAskedForIsTaken) {
 TEST_F(StreamSetupTest, WhatTheCameraDoesNotOfferIsToldWithWhatItDoes) {
   CameraOptions options;
   options.format = "NV12";
-  expectProblem(options, {"/dev/video7: has no format NV12", "GREY 64 x 48 (30, 15 frames/s)", "YUYV"});
+  expectProblem(options, {"/dev/video7: has no format NV12", "YUYV 64 x 48, 32 x 24; GREY 64 x 48"});
   options.format = "GREY";
   options.width = 640;
   options.height = 480;
   expectProblem(options, {"GREY 640 x 480", "would give 64 x 48", "YUYV 64 x 48"});
   options = {};
   options.frame_rate = 50;
-  expectProblem(options, {"50 frames/s", "would give 15 frames/s", "(30, 15 frames/s)"});
+  expectProblem(options, {"50 frames/s", "would give 15 frames/s", "offers 30, 15 frames/s"});
   driver_.formats = {{v4l2_fourcc('p', 'B', 'A', 'A'), {{64, 48, {30}}}}};
   expectProblem({}, {"no format that is known here"});
 }
