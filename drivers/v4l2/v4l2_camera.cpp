@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "drivers/frame_capture/exposure_middle.h"
@@ -13,6 +14,7 @@
 #include "drivers/v4l2/buffer_stamp.h"
 #include "drivers/v4l2/camera_controls.h"
 #include "drivers/v4l2/capture_device.h"
+#include "drivers/v4l2/limited_exposure.h"
 #include "drivers/v4l2/offered_formats.h"
 #include "drivers/v4l2/stream_setup.h"
 
@@ -38,6 +40,14 @@ class V4l2Camera : public LiveCamera {
   }
 
   V4l2Problem start(int buffers) { return queue_.start(buffers); }
+
+  void limitExposure(const std::vector<CameraControl>& controls, double longest_ms) {
+    keepFrameRate(*device_);
+    limited_exposure_ = LimitedExposure::take(*device_, controls, longest_ms);
+    if (limited_exposure_) exposure_ns_ = limited_exposure_->exposure_ns();
+    stream_.format += limited_exposure_ ? ", exposure up to " + rateText(longest_ms) + " ms"
+                                        : ", exposure without limit (the driver has none to set)";
+  }
 
   Capture next(cv::Mat& grey, std::chrono::nanoseconds timeout) override {
     FilledBuffer buffer;
@@ -99,6 +109,10 @@ class V4l2Camera : public LiveCamera {
     } else {
       damage = convertToGrey(layout_, buffer.data, buffer.size, jpeg_, grey);
     }
+    if (damage.empty() && limited_exposure_) {
+      limited_exposure_->see(*device_, grey);
+      exposure_ns_ = limited_exposure_->exposure_ns();
+    }
     if (const int error = queue_.give(buffer.index); error < 0) {
       return interrupted(stream_.camera + ": does not take its buffer back: " + errorText(error));
     }
@@ -111,7 +125,8 @@ class V4l2Camera : public LiveCamera {
   BufferLayout layout_;
   StreamDescription stream_;
   bool every_frame_;
-  std::int64_t exposure_ns_ = 0;  // where it is fixed
+  std::int64_t exposure_ns_ = 0;  // where it is set by hand or by us
+  std::optional<LimitedExposure> limited_exposure_;
   SequenceCounter counter_;
   JpegDecoder jpeg_;
 };
@@ -130,8 +145,11 @@ OpenedCamera openV4l2Camera(const CameraOptions& options, SystemCalls& system) {
   for (const ControlSetting& setting : options.controls) {
     if (const V4l2Problem failed = setControl(device, controls, setting); !failed.text.empty()) return problem(failed);
   }
-  if (options.longest_exposure_ms > 0) keepFrameRate(device);
   auto camera = std::make_unique<V4l2Camera>(std::move(opened.device), settled.setup, options);
+  const bool by_hand = std::any_of(options.controls.begin(), options.controls.end(), [](const auto& setting) {
+    return setting.name == "exposure" && setting.value != "auto";
+  });
+  if (options.longest_exposure_ms > 0 && !by_hand) camera->limitExposure(controls, options.longest_exposure_ms);
   if (const V4l2Problem failed = camera->start(options.buffers); !failed.text.empty()) return problem(failed);
   return {std::move(camera), "", false};
 }

@@ -12,10 +12,10 @@ mount -t sysfs sysfs /host/sys
 mount -t tmpfs tmpfs /host/mnt
 mount -t tmpfs tmpfs /host/run
 
-# Three cameras: a webcam, an HDMI input, a webcam of the multi-planar kind.
+# Two cameras: a webcam, and one of the multi-planar kind.
 while read -r module; do
   case $module in
-    vivid.ko) insmod /modules/vivid.ko n_devs=3 node_types=0x1,0x1,0x1 num_inputs=1,1,1 input_types=0,3,0 multiplanar=1,1,2 ;;
+    vivid.ko) insmod /modules/vivid.ko n_devs=2 node_types=0x1,0x1 num_inputs=1,1 input_types=0,0 multiplanar=1,2 ;;
     *) insmod "/modules/$module" ;;
   esac
 done < /modules/cameras

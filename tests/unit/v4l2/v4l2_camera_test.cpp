@@ -268,6 +268,44 @@ TEST_F(V4l2CameraTest, AFixedExposureGivesTheMiddleOfTheExposure) {
   EXPECT_EQ(next().frame.time_ns, driver_.time_ns - 20 * ms - 4 * ms);
 }
 
+TEST_F(V4l2CameraTest, ALimitedExposureIsRegulatedBelowItsLimit) {
+  driver_.controls[V4L2_CID_EXPOSURE_AUTO] = {
+      "Auto Exposure", V4L2_CTRL_TYPE_MENU, 0, 3, 1, 3, {{1, "Manual Mode"}, {3, "Aperture Priority Mode"}}};
+  driver_.controls[V4L2_CID_EXPOSURE_ABSOLUTE] = {
+      "Exposure Time, Absolute", V4L2_CTRL_TYPE_INTEGER, 1, 5000, 1, 157, {}};
+  driver_.controls[V4L2_CID_GAIN] = {"Gain", V4L2_CTRL_TYPE_INTEGER, 0, 160, 1, 0, {}};
+  CameraOptions options;
+  options.longest_exposure_ms = 10;
+  openWell(options);
+  const auto value = [&](std::uint32_t id) { return driver_.controls.at(id).value; };
+  EXPECT_EQ(value(V4L2_CID_EXPOSURE_AUTO), V4L2_EXPOSURE_MANUAL);
+  std::uint32_t sequence = 0;
+  const auto run = [&](int grey) {
+    for (int i = 0; i < 200; ++i) {
+      ASSERT_TRUE(fill(static_cast<std::uint8_t>(grey), sequence++));
+      ASSERT_EQ(next().event, CaptureEvent::frame);
+      ASSERT_LE(value(V4L2_CID_EXPOSURE_ABSOLUTE), 100);
+    }
+  };
+  run(5);  // as dark as it may be, the limit holds and gain helps
+  EXPECT_EQ(value(V4L2_CID_EXPOSURE_ABSOLUTE), 100);
+  EXPECT_EQ(value(V4L2_CID_GAIN), 160);
+  run(110);
+  EXPECT_EQ(value(V4L2_CID_GAIN), 160);
+  run(255);
+  EXPECT_EQ(value(V4L2_CID_GAIN), 0);
+  EXPECT_EQ(value(V4L2_CID_EXPOSURE_ABSOLUTE), 1);
+  ASSERT_TRUE(fill(110, sequence));
+  EXPECT_EQ(next().frame.time_ns, driver_.time_ns - 20 * ms + 50'000);  // half of 0.1 ms after the start
+}
+
+TEST_F(V4l2CameraTest, AnExposureThatCannotBeLimitedIsTold) {
+  CameraOptions options;
+  options.longest_exposure_ms = 10;
+  openWell(options);
+  EXPECT_NE(opened_.camera->stream().format.find("without limit"), std::string::npos);
+}
+
 TEST_F(V4l2CameraTest, StampsOfAnotherClockAreReplacedByTheTimeOfArrival) {
   openWell();
   driver_.buffer_flags = V4L2_BUF_FLAG_TIMESTAMP_COPY;
