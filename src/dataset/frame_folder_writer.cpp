@@ -43,9 +43,12 @@ int writeNewFile(const std::string& path, const std::vector<unsigned char>& cont
   return error;
 }
 
+// Of the disk that the folder is on, or will be.
 std::int64_t freeBytes(const std::string& folder) {
   std::error_code error;
-  const fs::space_info space = fs::space(folder, error);
+  fs::path there = fs::absolute(folder, error);
+  while (there.has_relative_path() && !fs::exists(there, error)) there = there.parent_path();
+  const fs::space_info space = fs::space(there, error);
   return error ? 0 : static_cast<std::int64_t>(space.available);
 }
 
@@ -62,9 +65,9 @@ FrameFolderWriter::FrameFolderWriter(std::string folder, const std::optional<Cam
   if (fs::exists(folder_, error) && (!fs::is_directory(folder_, error) || !fs::is_empty(folder_, error))) {
     throw InputError(folder_ + ": is there already and not an empty folder; give another --output");
   }
+  if (freeBytes(folder_) < free_bytes_kept_) throw InputError(tooFull(folder_, free_bytes_kept_));
   fs::create_directories(fs::path(folder_) / recording_frames_name, error);
   if (error) throw InputError(folder_ + ": cannot be made: " + error.message());
-  if (freeBytes(folder_) < free_bytes_kept_) throw InputError(tooFull(folder_, free_bytes_kept_));
   if (camera) writeFileAtomically(folder_ + "/" + recording_camera_name, formatRecordedCamera(*camera));
   const std::string list = folder_ + "/" + recording_list_name;
   list_ = open(list.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);

@@ -38,6 +38,7 @@ TEST(FrameFolderWriter, WritesOnlyToANewOrEmptyFolder) {
 TEST(FrameFolderWriter, LeavesTheDiskItsFreeSpace) {
   const TemporaryFolder folder;
   expectInputError([&] { FrameFolderWriter(folder.path("r"), std::nullopt, "", std::int64_t{1} << 60); }, "MiB free");
+  EXPECT_FALSE(std::filesystem::exists(folder.path("r")));
 }
 
 TEST(FrameFolderWriter, TimeStampsGrow) {
