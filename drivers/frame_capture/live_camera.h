@@ -43,6 +43,7 @@ struct StreamDescription {
   int width = 0;       // [px]
   int height = 0;
   std::int64_t frame_interval_ns = 0;  // 0 where it is not known
+  bool is_recording = false;           // whose pauses and damages are its own, and no reason to open it again
 };
 
 class LiveCamera {

@@ -34,7 +34,8 @@ Capture ReopeningCamera::next(cv::Mat& grey, std::chrono::nanoseconds timeout) {
 }
 
 Capture ReopeningCamera::takeFrame(cv::Mat& grey, std::int64_t timeout_ns) {
-  const std::int64_t left_ns = std::max<std::int64_t>(watch_.frozenAt() - clock_.now_ns(), 0);
+  const std::int64_t left_ns =
+      stream_.is_recording ? timeout_ns : std::max<std::int64_t>(watch_.frozenAt() - clock_.now_ns(), 0);
   Capture capture = camera_->next(grey, std::chrono::nanoseconds(std::min(timeout_ns, left_ns)));
   if (capture.event == CaptureEvent::interrupted) return interrupt(capture.message);
   if (capture.event == CaptureEvent::ended) return capture;
@@ -54,7 +55,7 @@ Capture ReopeningCamera::takeFrame(cv::Mat& grey, std::int64_t timeout_ns) {
     watch_.gotDamagedFrame(now_ns);
     damage_ = capture.message;
   }
-  if (now_ns < watch_.frozenAt()) return capture;
+  if (stream_.is_recording || now_ns < watch_.frozenAt()) return capture;
   return interrupt(stream_.camera + (damage_.empty() ? ": the stream is frozen, no frame came in time"
                                                      : ": only damaged frames came: " + damage_));
 }

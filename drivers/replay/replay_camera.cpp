@@ -72,7 +72,7 @@ class ReplayCamera : public LiveCamera {
 OpenedCamera openReplayCamera(std::unique_ptr<FrameSource> source, const std::string& name, cv::Size size,
                               const ReplayPace& pace) {
   constexpr std::size_t most_unreadable = 100;  // at the beginning
-  StreamDescription stream{name, source->kind(), size.width, size.height, 0};
+  StreamDescription stream{name, source->kind(), size.width, size.height, 0, true};
   std::deque<Frame> read;
   std::int64_t first_ns = 0;
   std::size_t readable = 0;

@@ -137,8 +137,8 @@ TEST_F(Vivid, EveryFormatGivesTheTestPattern) {
   }
 }
 
-// vivid's own thread leaves out frames where the machine is busy. Those that were lost for want of a buffer are ours;
-// the best of some tries counts for the rate.
+// vivid's own thread leaves out frames where the machine is busy. Those that were lost for want of a buffer are ours
+// and must be none; of some tries the best is told.
 class VividRate : public Vivid {
  protected:
   void expectRate(const CameraOptions& options, double wanted) {
@@ -151,7 +151,9 @@ class VividRate : public Vivid {
       read(*camera, 5);
       const int frames = static_cast<int>(2 * wanted);
       const Read sum = read(*camera, frames);
-      const double rate = (frames - 1) * 1e9 / static_cast<double>(sum.last_ns - sum.first_ns);
+      const auto duration_ns = static_cast<double>(sum.last_ns - sum.first_ns);
+      const double rate = (frames - 1) * 1e9 / duration_ns;
+      EXPECT_NEAR(static_cast<double>(frames - 1 + sum.lost) * 1e9 / duration_ns, wanted, 0.04 * wanted);
       std::cout << camera->stream().format << ": " << rate << " frames/s, " << sum.lost << " lost (" << sum.lost_by_us
                 << " for want of a buffer), longest gap " << sum.longest_gap_ns / ms << " ms, at most "
                 << sum.latest_ns / ms << " ms after the stamp\n";
@@ -161,7 +163,7 @@ class VividRate : public Vivid {
       best = sum;
       best_rate = rate;
     }
-    EXPECT_NEAR(best_rate, wanted, 0.03 * wanted);
+    EXPECT_GT(best_rate, 0.75 * wanted);
   }
 };
 

@@ -18,6 +18,7 @@ struct World {
   bool frozen = false;
   bool stamps_stand_still = false;
   bool damaged = false;
+  bool is_recording = false;
   int width = 4;
   int opened = 0;
   int attempts = 0;
@@ -25,7 +26,9 @@ struct World {
 
 class ScriptedCamera : public LiveCamera {
  public:
-  explicit ScriptedCamera(World& world) : world_(world) { stream_ = {"scripted", "GREY", world.width, 3, interval}; }
+  explicit ScriptedCamera(World& world) : world_(world) {
+    stream_ = {"scripted", "GREY", world.width, 3, interval, world.is_recording};
+  }
   Capture next(cv::Mat& grey, std::chrono::nanoseconds timeout) override {
     if (!world_.plugged) return {CaptureEvent::interrupted, {}, "unplugged"};
     if (world_.frozen || timeout.count() < interval) {
@@ -126,6 +129,19 @@ TEST_F(ReopeningCameraTest, ACameraThatGivesOnlyDamagedFramesIsOpenedAgain) {
   EXPECT_EQ(next().event, CaptureEvent::frame);
   world_.damaged = true;
   EXPECT_NE(until(CaptureEvent::interrupted, 5000 * ms).message.find("torn"), std::string::npos);
+}
+
+TEST_F(ReopeningCameraTest, APauseOfARecordingIsNoReasonToBeginItAgain) {
+  world_.is_recording = true;
+  ReopeningCamera recording([this] { return open(); }, std::make_unique<ScriptedCamera>(world_), WatchPolicy{},
+                            clock());
+  EXPECT_EQ(recording.next(grey_, std::chrono::milliseconds(100)).event, CaptureEvent::frame);
+  world_.frozen = true;
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(recording.next(grey_, std::chrono::milliseconds(100)).event, CaptureEvent::none_yet);
+  }
+  world_.frozen = false;
+  EXPECT_EQ(recording.next(grey_, std::chrono::milliseconds(100)).frame.sequence, 1);
 }
 
 TEST_F(ReopeningCameraTest, AnotherSizeIsRefused) {
