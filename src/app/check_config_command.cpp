@@ -6,6 +6,7 @@
 
 #include "app/command_line.h"
 #include "app/configuration.h"
+#include "app/configuration_capture.h"
 #include "app/configuration_keys.h"
 #include "dataset/calibration_file.h"
 
@@ -34,6 +35,7 @@ void listDifferences(const Configuration& configuration) {
   std::cout << configuration.source << ": a good configuration; "
             << (changes.empty() ? "all settings are the defaults" : "what differs from the defaults:") << "\n"
             << changes;
+  std::cout << formatCaptureSection(configuration.capture);
   if (configuration.camera) {
     listCamera(*configuration.camera);
   } else {

@@ -10,9 +10,11 @@
 #include <new>
 #include <string>
 
+#include "app/cameras_command.h"
 #include "app/check_config_command.h"
 #include "app/evaluate_command.h"
 #include "app/listen_command.h"
+#include "app/record_command.h"
 #include "app/replay_command.h"
 #include "app/simulate_command.h"
 #include "edgeslam/input_error.h"
@@ -44,6 +46,8 @@ int parseAndRun(int argc, const char* const* argv) {
   addSimulateCommand(app, exit_code);
   addListenCommand(app, exit_code);
   addCheckConfigCommand(app, exit_code);
+  addCamerasCommand(app, exit_code);
+  addRecordCommand(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

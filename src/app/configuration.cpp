@@ -9,6 +9,7 @@
 #include <set>
 
 #include "app/configuration_camera.h"
+#include "app/configuration_capture.h"
 #include "app/configuration_keys.h"
 #include "app/configuration_suggestion.h"
 
@@ -43,7 +44,8 @@ class Reader {
       if (!key.isHeading()) names_.push_back(key.path);
     }
     for (const std::string& name : cameraKeys()) names_.push_back(name);
-    sections_.insert("camera");
+    for (const std::string& name : captureKeys()) names_.push_back(name);
+    sections_.insert({"camera", "capture"});
   }
 
   void readDocument(const YAML::Node& document) {
@@ -96,12 +98,16 @@ class Reader {
     if (section == "camera") {
       readCameraSection(node, configuration_, [this](int at, const std::string& problem) { tell(at, problem); });
     }
+    if (section == "capture") {
+      readCaptureSection(node, configuration_.capture,
+                         [this](int at, const std::string& problem) { tell(at, problem); });
+    }
   }
 
   void readKey(const std::string& name, int line, const YAML::Node& value) {
     if (std::find(names_.begin(), names_.end(), name) == names_.end()) return tellUnknown(line, name);
     const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const auto& k) { return k.path == name; });
-    if (key == keys_.end()) return;  // of the camera's section
+    if (key == keys_.end()) return;  // of the camera's or the capture section
     std::string wrong;
     if (!value.IsScalar()) {
       wrong = value.IsNull() ? "has no value" : "a list or mapping";
@@ -187,7 +193,7 @@ bool isCalibrationFile(const std::string& path) {
 }
 
 std::string formatConfiguration(const Configuration& configuration) {
-  std::string text = formatCameraSection(configuration);
+  std::string text = formatCameraSection(configuration) + formatCaptureSection(configuration.capture);
   appendSettings(text, configuration.settings, false);
   return text;
 }
@@ -199,7 +205,7 @@ std::string defaultConfigurationText() {
       "# `edgeslam check-config FILE` says what is wrong with a file, or what it changes. Lengths of the scene are in "
       "map units,\n"
       "# a sigma is a standard deviation.\n\n";
-  text += cameraSectionDocumentation();
+  text += cameraSectionDocumentation() + captureSectionDocumentation();
   appendSettings(text, Settings{}, true);
   return text;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/frame_capture/camera_options.h"
 #include "edgeslam/input_error.h"
 #include "geometry/camera.h"
 #include "geometry/pose.h"
@@ -16,6 +17,7 @@ struct Configuration {
   Settings settings;
   std::optional<Camera> camera;  // where the file gives one
   Pose body_T_camera;            // of the camera on the robot, translation [m]; the identity unless the file gives it
+  CameraOptions capture;         // the live camera
   std::string source;            // path of the file; empty for the defaults
 };
 
