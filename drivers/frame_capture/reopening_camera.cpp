@@ -29,6 +29,12 @@ ReopeningCamera::ReopeningCamera(CameraOpener open, std::unique_ptr<LiveCamera> 
   watch_.opened(clock_.now_ns(), stream_.frame_interval_ns);
 }
 
+ReopeningCamera::ReopeningCamera(CameraOpener open, const StreamDescription& expected, const std::string& problem,
+                                 const WatchPolicy& policy, CaptureClock clock)
+    : open_(std::move(open)), stream_(expected), watch_(policy), clock_(std::move(clock)), told_(problem) {
+  watch_.failed(clock_.now_ns());
+}
+
 Capture ReopeningCamera::next(cv::Mat& grey, std::chrono::nanoseconds timeout) {
   return camera_ ? takeFrame(grey, timeout.count()) : tryToOpen(timeout.count());
 }
@@ -86,8 +92,9 @@ Capture ReopeningCamera::tryToOpen(std::int64_t timeout_ns) {
   OpenedCamera opened = open_();
   if (!opened.camera) return interrupt(opened.problem);
   const StreamDescription& stream = opened.camera->stream();
-  if (stream.width != stream_.width || stream.height != stream_.height) {
-    return interrupt(stream.camera + ": gives another size than before, " + stream.format);
+  if (stream_.width > 0 && (stream.width != stream_.width || stream.height != stream_.height)) {
+    return interrupt(stream.camera + ": gives another size, " + stream.format + "; expected are " +
+                     std::to_string(stream_.width) + " x " + std::to_string(stream_.height));
   }
   camera_ = std::move(opened.camera);
   stream_ = camera_->stream();

@@ -24,6 +24,10 @@ class ReopeningCamera : public LiveCamera {
   ReopeningCamera(CameraOpener open, std::unique_ptr<LiveCamera> first, const WatchPolicy& policy = {},
                   CaptureClock clock = systemClock());
 
+  // A camera that is not there yet, and is waited for: its size, where it is not 0, and why it is not there.
+  ReopeningCamera(CameraOpener open, const StreamDescription& expected, const std::string& problem,
+                  const WatchPolicy& policy = {}, CaptureClock clock = systemClock());
+
   // As LiveCamera::next, but after `interrupted`, which comes once for each reason, just go on calling. Sequence
   // numbers go on over an interruption; a frame whose time stamp is not after the one before is damaged. Blocks longer
   // than `timeout` only where the driver does in opening.

@@ -44,8 +44,9 @@ status_t statusMessage(const PublisherStatus& status, const FrameFigures& frames
   message.utime = utime;
   message.sequence = sequence;
   message.uptime_ms = status.uptime_ms;
-  message.state = stateNumber(frames.state);
-  message.reason = messageText(frames.reason);
+  const bool has_camera = status.camera_problem.empty();
+  message.state = stateNumber(has_camera ? frames.state : TrackingState::lost);
+  message.reason = messageText(has_camera ? frames.reason : status.camera_problem);
   message.version = messageText(status.version);
   message.frames_per_second = finite(frames.frames_per_second);
   message.poses_per_second = finite(frames.poses_per_second);

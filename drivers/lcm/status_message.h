@@ -25,6 +25,7 @@ struct PublisherStatus {
   int keyframes = -1;
   int points = -1;
   bool recording = false;
+  std::string camera_problem;  // why no frames come: the state is then lost, and this its reason; or empty
 };
 
 // What became of messages, since the start.

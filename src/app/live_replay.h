@@ -14,10 +14,13 @@
 
 namespace edgeslam {
 
+class RunPublisher;
+
 struct LiveReplay {
   std::optional<Map> map_in;
-  std::string record_folder;         // empty: not recorded
-  RecordingDescription description;  // of the recording
+  std::string record_folder;          // empty: not recorded
+  RecordingDescription description;   // of the recording
+  RunPublisher* publisher = nullptr;  // null: nothing is published
   // Called for each frame, in order, by another thread.
   std::function<void(const FrameResult&, const std::string& problem)> progress;
 };

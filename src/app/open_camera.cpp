@@ -39,4 +39,24 @@ std::unique_ptr<ReopeningCamera> openLastingCamera(const CameraOptions& options)
   return std::make_unique<ReopeningCamera>([options] { return openCamera(options); }, std::move(opened.camera));
 }
 
+std::unique_ptr<ReopeningCamera> openOrAwaitCamera(const CameraOptions& options, cv::Size size, std::string& problem) {
+  OpenedCamera opened = openCamera(options);
+  const CameraOpener open = [options] { return openCamera(options); };
+  problem = opened.problem;
+  if (opened.camera) {
+    const StreamDescription& stream = opened.camera->stream();
+    if (stream.width != size.width || stream.height != size.height) {
+      throw InputError(stream.camera + ": gives " + stream.format + ", the calibration is for " +
+                       std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels");
+    }
+    return std::make_unique<ReopeningCamera>(open, std::move(opened.camera));
+  }
+  if (!opened.may_heal) throw InputError(opened.problem);
+  StreamDescription expected;
+  expected.camera = options.device;
+  expected.width = size.width;
+  expected.height = size.height;
+  return std::make_unique<ReopeningCamera>(open, expected, opened.problem);
+}
+
 }  // namespace edgeslam
