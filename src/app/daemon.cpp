@@ -77,7 +77,10 @@ void Daemon::oneRun() {
   if (end.command) return beginNext(*end.command, run);
   ended_ = true;
   if (!setup_.map_out.empty()) writeMap(run.mapper().initialised() ? run.mapper().map() : Map());
-  log_.tell("ended");
+  const PublisherStatus totals = publisher_->status();
+  log_.tell("ended after " + std::to_string(totals.frames_captured) + " frames, " +
+            std::to_string(totals.frames_dropped) + " of them dropped, " + std::to_string(totals.frames_unreadable) +
+            " unreadable");
 }
 
 Daemon::RunEnd Daemon::capture(LiveRun& run) {

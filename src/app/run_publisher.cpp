@@ -52,6 +52,7 @@ void RunPublisher::end() {
   work_.finish();
   work_.complete();
   answerSaves(std::exchange(save_wishes_, {}), false, "the run ended before the map could be saved");
+  publisher_.status(status());
   map_wanted_ = false;
   earlier_runs_ = countsOverRuns();
   run_ = nullptr;

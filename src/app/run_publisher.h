@@ -43,7 +43,7 @@ class RunPublisher {
 
   // Before LiveRun::start(). `recorder` may be null. same_map: the scale stays.
   void begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder, RunStart start);
-  // After LiveRun::stop(). Saves of the map that are under way are waited for.
+  // After LiveRun::stop(). Saves of the map that are under way are waited for; a last status has the run's totals.
   void end();
 
   // LiveObserver's.
@@ -52,6 +52,8 @@ class RunPublisher {
   void report(const MappingReport& report);
   void tick();
 
+  // Since the start, over all runs; for the thread that starts and ends them.
+  PublisherStatus status() const;
   // Of the service; for the thread that starts and ends runs, likewise.
   ServiceNotification& service() { return service_; }
 
@@ -65,7 +67,6 @@ class RunPublisher {
   // run_publisher.cpp: frames and status.
   void forgetScale();
   void eachSecond(Clock::time_point now);
-  PublisherStatus status() const;
   void tellChanges(const PublisherStatus& status);
   LiveCounts countsOverRuns() const;
   bool isRecording() const;

@@ -56,6 +56,7 @@ class BackgroundProcess {
     process_ = 0;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
+  void send(int signal) const { kill(process_, signal); }
   void end(int signal) {
     if (process_ <= 0) return;
     kill(process_, signal);

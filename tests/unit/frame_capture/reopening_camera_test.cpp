@@ -156,5 +156,41 @@ TEST_F(ReopeningCameraTest, AnotherSizeIsRefused) {
   EXPECT_EQ(grey_.cols, 4);
 }
 
+TEST_F(ReopeningCameraTest, OneThatIsNotThereYetIsWaitedFor) {
+  world_.plugged = false;
+  StreamDescription expected;
+  expected.width = 4;
+  expected.height = 3;
+  ReopeningCamera camera([this] { return open(); }, expected, "there is no camera", WatchPolicy{}, clock());
+  EXPECT_FALSE(camera.isOpen());
+  EXPECT_EQ(camera.stream().width, 4);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(camera.next(grey_, std::chrono::milliseconds(100)).event, CaptureEvent::none_yet) << "told before";
+  }
+  EXPECT_GT(world_.attempts, 3);
+  EXPECT_LT(world_.attempts, 20) << "with growing waits";
+  world_.plugged = true;
+  Capture capture;
+  for (int i = 0; i < 100 && capture.event != CaptureEvent::frame; ++i) {
+    capture = camera.next(grey_, std::chrono::milliseconds(100));
+  }
+  EXPECT_EQ(capture.event, CaptureEvent::frame);
+  EXPECT_TRUE(capture.frame.after_interruption);
+  EXPECT_EQ(capture.frame.sequence, 0);
+}
+
+TEST_F(ReopeningCameraTest, AnotherSizeThanExpectedIsAnError) {
+  StreamDescription expected;
+  expected.width = 640;
+  expected.height = 480;
+  ReopeningCamera camera([this] { return open(); }, expected, "", WatchPolicy{}, clock());
+  Capture capture;
+  for (int i = 0; i < 100 && capture.event == CaptureEvent::none_yet; ++i) {
+    capture = camera.next(grey_, std::chrono::milliseconds(100));
+  }
+  EXPECT_EQ(capture.event, CaptureEvent::interrupted);
+  EXPECT_NE(capture.message.find("expected are 640 x 480"), std::string::npos) << capture.message;
+}
+
 }  // namespace
 }  // namespace edgeslam

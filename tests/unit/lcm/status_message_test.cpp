@@ -58,7 +58,7 @@ TEST(FrameStatistics, IsBoundedWhereNobodyAsks) {
 }
 
 TEST(StatusMessage, TellsWhatItIsGiven) {
-  const PublisherStatus status{1, "1.2.3", 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, true};
+  const PublisherStatus status{1, "1.2.3", 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, true, ""};
   const FrameFigures figures{TrackingState::relocalised, "found", 30.5, 29.5, 15, 25};
   const status_t message = statusMessage(status, figures, {13, 14, 15, 16}, {17, 51.5}, 18, 19);
   EXPECT_EQ(message.utime, 19);
@@ -113,6 +113,16 @@ TEST(SystemFigures, MemoryAndTheWarmestZone) {
   EXPECT_GT(figures.memory_bytes, residentMemory_kb() * 1000 / 2);
   EXPECT_LT(figures.memory_bytes, residentMemory_kb() * 1000 * 2);
   EXPECT_EQ(systemFigures(folder.path("none")).temperature_c, -1);
+}
+
+TEST(StatusMessage, WithoutACameraTheStateIsLostWithTheReason) {
+  PublisherStatus status;
+  status.camera_problem = "/dev/video0: unplugged";
+  FrameFigures figures;
+  figures.state = TrackingState::tracking;
+  const status_t message = statusMessage(status, figures, {}, {}, 0, 0);
+  EXPECT_EQ(message.state, state_t::LOST);
+  EXPECT_EQ(message.reason, "/dev/video0: unplugged");
 }
 
 }  // namespace
