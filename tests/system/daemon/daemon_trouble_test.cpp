@@ -87,6 +87,7 @@ TEST_F(DaemonTrouble, FramesFeedTheWatchdog) {
   EXPECT_TRUE(notifications.hears("READY=1"));
   EXPECT_TRUE(notifications.hears("WATCHDOG=1", 4)) << notifications.all();
   EXPECT_TRUE(notifications.hears("STATUS=tracking, ")) << notifications.all();
+  EXPECT_TRUE(notifications.hears("STOPPING=1"));
   EXPECT_EQ(daemon->exitCode(), 0);
 }
 
