@@ -67,8 +67,8 @@ LiveObserver RunPublisher::observer() {
 }
 
 void RunPublisher::frame(const FrameResult& result, const std::string& problem) {
-  const bool another_map = result.state == TrackingState::initialising && isGoodPose(state_);
-  if (another_map || (result.state == TrackingState::initialising && scale_ != ScaleKind::unknown)) forgetScale();
+  const bool is_initialising = result.state == TrackingState::initialising;
+  if (is_initialising && (state_ != TrackingState::initialising || scale_ != ScaleKind::unknown)) forgetScale();
   publisher_.frame(result);
   service_.alive(Clock::now());
   history_.add(result);

@@ -59,7 +59,7 @@ TEST(ConfigurationService, WhatIsWrittenReadsBackAsTheSame) {
   EXPECT_EQ(formatServiceSections(read(whole).service), formatServiceSections(read(text).service));
   EXPECT_EQ(formatServiceSections(ServiceOptions()), "");
   for (const std::string& key : serviceKeys()) {
-    EXPECT_NE(serviceSectionsDocumentation().find("  " + key.substr(key.find('.') + 1) + ":"), std::string::npos)
+    EXPECT_NE(serviceSectionsDocumentation().find(" " + key.substr(key.find('.') + 1) + ":"), std::string::npos)
         << key;
   }
 }
