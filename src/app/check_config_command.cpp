@@ -36,7 +36,7 @@ void listDifferences(const Configuration& configuration) {
   std::cout << configuration.source << ": a good configuration; "
             << (changes.empty() ? "all settings are the defaults" : "what differs from the defaults:") << "\n"
             << changes;
-  std::cout << formatCaptureSection(configuration.capture) << formatServiceSections(configuration.service);
+  std::cout << formatCaptureSection(configuration.capture) << formatServiceSections(configuration);
   if (configuration.camera) {
     listCamera(*configuration.camera);
   } else {

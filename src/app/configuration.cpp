@@ -110,7 +110,7 @@ class Reader {
   }
 
   void readServiceSection(const std::string& section, const YAML::Node& node) {
-    edgeslam::readServiceSection(section, node, configuration_.service,
+    edgeslam::readServiceSection(section, node, configuration_,
                                  [this](int at, const std::string& problem) { tell(at, problem); });
   }
 
@@ -204,7 +204,7 @@ bool isCalibrationFile(const std::string& path) {
 
 std::string formatConfiguration(const Configuration& configuration) {
   std::string text = formatCameraSection(configuration) + formatCaptureSection(configuration.capture) +
-                     formatServiceSections(configuration.service);
+                     formatServiceSections(configuration);
   appendSettings(text, configuration.settings, false);
   return text;
 }

@@ -23,8 +23,6 @@ struct ServiceOptions {
   bool goes_on_with_map = false;  // at the start, with the map in the file, where there is one
   std::string recordings_folder;  // for a folder a recording; empty: no command begins one
   bool records_from_start = false;
-  int recording_megabytes = 4096;  // most that one recording takes
-  int free_megabytes = 256;        // of the disk, left free by recordings
   ScaleOptions scale;
 };
 

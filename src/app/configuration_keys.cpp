@@ -30,6 +30,7 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
   LocalAdjustmentOptions& adjustment = settings.mapping.local_adjustment;
   BundleOptions& bundle = settings.mapping.local_adjustment.bundle;
   CullingOptions& culling = settings.mapping.culling;
+  ThreadOptions& threads = settings.threads;
   return {
       heading("edges", "Edges: zero crossings of a difference of Gaussians, joined into chains"),
       {"edges.sigma", &edges.sigma, "px", 0.3, 10, "standard deviation of the narrower Gaussian"},
@@ -192,6 +193,20 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       heading("pipeline", "Schedule"),
       {"pipeline.view_delay_frames", &settings.view_delay_frames, "frames", 1, 100,
        "the map that follows from a keyframe is used so many frames later"},
+
+      heading("threads", "Threads of a live run; what is not allowed is told and left out"),
+      {"threads.capture_priority", &threads.capture_priority, "", 0, 99,
+       "real-time priority (SCHED_FIFO); 0: the usual scheduling"},
+      {"threads.tracking_priority", &threads.tracking_priority, "", 0, 99, "likewise"},
+      {"threads.publishing_priority", &threads.publishing_priority, "", 0, 99, "likewise"},
+      {"threads.mapping_nice", &threads.mapping_nice, "", 0, 19, "nice level"},
+      {"threads.places_nice", &threads.places_nice, "", 0, 19, "nice level"},
+      {"threads.tracking_processor", &threads.tracking_processor, "", -1, 1023,
+       "the thread keeps to this processor; -1: any"},
+      {"threads.mapping_processor", &threads.mapping_processor, "", -1, 1023, "likewise"},
+      {"threads.places_processor", &threads.places_processor, "", -1, 1023, "likewise"},
+      {"threads.lock_memory", &threads.lock_memory, "", 0, 0, "keeps the program's memory from being swapped out"},
+
 
       heading("recovery", "Track-loss recovery (P21) and relocalisation (P22)"),
       {"recovery.enabled", &settings.mapping.recovery_enabled, "", 0, 0, "off only to measure what it gains"},

@@ -19,7 +19,9 @@ struct TextKey {
 using ServiceKey = std::variant<TextKey, ConfigurationKey>;
 
 // In the order of the file.
-std::vector<ServiceKey> keysOf(ServiceOptions& options) {
+std::vector<ServiceKey> keysOf(Configuration& configuration) {
+  ServiceOptions& options = configuration.service;
+  RecordingSpace& space = configuration.settings.recording;
   LcmOptions& lcm = options.lcm;
   ScaleOptions& scale = options.scale;
   const auto number = [](const std::string& path, ConfigurationField field, const std::string& unit, double least,
@@ -48,12 +50,13 @@ std::vector<ServiceKey> keysOf(ServiceOptions& options) {
              "at the start go on with the map in the file, where there is one: frames are looked for in it"),
 
       TextKey{"recording.folder", &options.recordings_folder,
-              "where a folder is made for each recording; relative to the working directory", "recordings"},
-      number("recording.from_start", &options.records_from_start, "", 0, 0, "record from the start, not on command"),
-      number("recording.budget_megabytes", &options.recording_megabytes, "MB", 1, 1e7,
-             "a recording that has taken as much ends"),
-      number("recording.free_megabytes", &options.free_megabytes, "MB", 1, 1e7,
-             "a recording ends where the disk has less than this free"),
+              "where `edgeslam run` makes a folder for each recording; relative to the working directory",
+              "recordings"},
+      number("recording.from_start", &options.records_from_start, "", 0, 0,
+             "`edgeslam run` records from the start, not only on command"),
+      number("recording.most_megabytes", &space.most_megabytes, "MB", 1, 1e9, "most that a recording takes"),
+      number("recording.kept_free_megabytes", &space.kept_free_megabytes, "MB", 0, 1e9,
+             "left free for others; at less the recording ends"),
 
       number("scale.largest_sigma", &scale.largest_sigma, "", 0.001, 1,
              "a scale is refused where its standard deviation is over this share of it"),
@@ -109,7 +112,7 @@ std::string lcmProblem(const LcmOptions& options) {
 const char* introduction(const std::string& section) {
   if (section == "lcm") return "Messages to the robot's controller";
   if (section == "map") return "The map on the disk, of `edgeslam run`";
-  if (section == "recording") return "The flight recorder of `edgeslam run`";
+  if (section == "recording") return "The flight recorder of live runs";
   return "Metres a map unit, set by command from a known distance";
 }
 
@@ -121,15 +124,15 @@ const std::vector<std::string>& serviceSections() {
 }
 
 std::vector<std::string> serviceKeys() {
-  ServiceOptions options;
+  Configuration configuration;
   std::vector<std::string> names;
-  for (const ServiceKey& key : keysOf(options)) names.push_back(pathOf(key));
+  for (const ServiceKey& key : keysOf(configuration)) names.push_back(pathOf(key));
   return names;
 }
 
-void readServiceSection(const std::string& section, const YAML::Node& node, ServiceOptions& options,
+void readServiceSection(const std::string& section, const YAML::Node& node, Configuration& configuration,
                         const TellProblem& tell) {
-  for (const ServiceKey& key : keysOf(options)) {
+  for (const ServiceKey& key : keysOf(configuration)) {
     const std::string& path = pathOf(key);
     if (sectionOf(path) != section) continue;
     const YAML::Node value = node[nameOf(path)];
@@ -137,11 +140,12 @@ void readServiceSection(const std::string& section, const YAML::Node& node, Serv
     if (const std::string wrong = read(key, value); !wrong.empty()) tell(value.Mark().line, path + ": " + wrong);
   }
   if (section != "lcm") return;
-  if (const std::string wrong = lcmProblem(options.lcm); !wrong.empty()) tell(node.Mark().line, "lcm: " + wrong);
+  if (const std::string wrong = lcmProblem(configuration.service.lcm); !wrong.empty())
+    tell(node.Mark().line, "lcm: " + wrong);
 }
 
-std::string formatServiceSections(const ServiceOptions& options) {
-  ServiceOptions shown = options, usual;
+std::string formatServiceSections(const Configuration& configuration) {
+  Configuration shown = configuration, usual;
   const std::vector<ServiceKey> keys = keysOf(shown), usual_keys = keysOf(usual);
   std::string text, section;
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -155,7 +159,7 @@ std::string formatServiceSections(const ServiceOptions& options) {
 }
 
 std::string serviceSectionsDocumentation() {
-  ServiceOptions usual;
+  Configuration usual;
   std::string text, section;
   for (const ServiceKey& key : keysOf(usual)) {
     const std::string& path = pathOf(key);

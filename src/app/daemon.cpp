@@ -43,14 +43,24 @@ Daemon::Daemon(DaemonSetup setup, EventLog& log) : setup_(std::move(setup)), log
 
 void Daemon::tellStartProblems() {
   const ServiceOptions& service = setup_.configuration.service;
+  const ThreadOptions& threads = setup_.configuration.settings.threads;
   StartNeeds needs;
   needs.lcm_url = effectiveUrl(service.lcm);
-  needs.real_time_priority = service.lcm.real_time_priority;
+  needs.real_time_priority =
+      std::max({threads.capture_priority, threads.tracking_priority, threads.publishing_priority});
+  needs.lock_memory = threads.lock_memory;
   needs.folder = service.recordings_folder;
   if (needs.folder.empty() && !setup_.map_out.empty()) {
     needs.folder = std::filesystem::absolute(setup_.map_out).parent_path().string();
   }
   for (const std::string& problem : startProblems(needs)) log_.tell(problem);
+}
+
+// Priorities and memory were told at the start, with what to do.
+void Daemon::tellProcessorProblems(const LiveRun& run) {
+  for (const std::string& problem : run.problems()) {
+    if (problem.rfind("the processor", 0) == 0) log_.tell("runs on without " + problem);
+  }
 }
 
 void Daemon::run() {
@@ -62,14 +72,16 @@ void Daemon::run() {
 
 void Daemon::oneRun() {
   recorder_ = std::exchange(next_recorder_, nullptr);
-  LiveRun run(setup_.camera, setup_.configuration.settings, LiveOptions(), publisher_->observer(), recorder_.get());
+  const Settings& settings = setup_.configuration.settings;
+  LiveRun run(setup_.camera, settings, liveOptions(settings.threads), publisher_->observer(), recorder_.get());
   if (map_) run.goOnWith(std::move(*map_));
   map_.reset();
   publisher_->begin(run, recorder_, start_);
   run.start();
-  for (const std::string& problem : run.problems()) log_.tell(problem);
-
+  if (!std::exchange(processors_told_, true)) tellProcessorProblems(run);
+  setUpThread({"capture", settings.threads.capture_priority, 0, false, {}});
   const RunEnd end = capture(run);
+  setUpThread({"edgeslam", 0, 0, false, {}});  // for the threads to come
   if (!end.command) publisher_->service().stopping();
   run.stop(end.settles);
   publisher_->end();
@@ -140,9 +152,11 @@ void Daemon::takeDamaged(const Capture& captured, LiveRun& run) {
 // While the run goes on still: false where the command cannot be carried out, and is answered.
 bool Daemon::prepare(const Command& command) {
   if (command.kind != CommandKind::start_recording) return true;
+  setUpThread({"edgeslam", 0, 0, false, {}});  // the recorder's thread inherits it
   try {
     next_recorder_ = recordTo(nextRecordingFolder());
   } catch (const std::exception& error) {
+    setUpThread({"capture", setup_.configuration.settings.threads.capture_priority, 0, false, {}});
     link_.answer(command, false, error.what());
     log_.tell(std::string("no recording: ") + error.what());
     return false;
@@ -169,11 +183,9 @@ void Daemon::beginNext(const Command& command, LiveRun& run) {
 }
 
 std::shared_ptr<FlightRecorder> Daemon::recordTo(const std::string& folder) {
-  const ServiceOptions& service = setup_.configuration.service;
-  const RecordingLimits limits{std::int64_t{service.recording_megabytes} * 1'000'000,
-                               std::int64_t{service.free_megabytes} * 1'000'000};
   const RecordingDescription description{setup_.camera, formatConfiguration(setup_.configuration), EDGESLAM_VERSION};
-  auto recorder = std::make_shared<FlightRecorder>(folder, description, limits);
+  auto recorder =
+      std::make_shared<FlightRecorder>(folder, description, recordingLimits(setup_.configuration.settings.recording));
   log_.tell(recorder->status().message);
   return recorder;
 }

@@ -42,6 +42,7 @@ class Daemon {
   };
 
   void tellStartProblems();
+  void tellProcessorProblems(const LiveRun& run);
   void oneRun();
   RunEnd capture(LiveRun& run);
   void take(const Capture& capture, LiveRun& run);
@@ -68,7 +69,7 @@ class Daemon {
   std::optional<Map> map_;  // that the run to come goes on with
   bool ended_ = false;
   std::int64_t index_ = -1, time_ns_ = -1;  // of the last frame handed over
-  bool damage_told_ = false;
+  bool damage_told_ = false, processors_told_ = false;
 };
 
 }  // namespace edgeslam

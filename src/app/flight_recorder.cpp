@@ -5,6 +5,15 @@
 
 namespace edgeslam {
 
+RecordingLimits recordingLimits(const RecordingSpace& space) {
+  const auto bytesOf = [](double megabytes) { return static_cast<std::int64_t>(megabytes * (1 << 20)); };
+  return {bytesOf(space.most_megabytes), bytesOf(space.kept_free_megabytes)};
+}
+
+void FlightRecorder::mappingBusy(std::int64_t frame_index) noexcept {
+  postNumbered(DecisionKind::busy, frame_index, 0);
+}
+
 void FlightRecorder::tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept {
   postNumbered(DecisionKind::update, frame_index, number);
 }

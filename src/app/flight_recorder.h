@@ -6,8 +6,11 @@
 
 #include "dataset/recording_thread.h"
 #include "pipeline/decision_sink.h"
+#include "pipeline/settings.h"
 
 namespace edgeslam {
+
+RecordingLimits recordingLimits(const RecordingSpace& space);
 
 class FlightRecorder : public DecisionSink {
  public:
@@ -15,6 +18,7 @@ class FlightRecorder : public DecisionSink {
   FlightRecorder(const std::string& folder, const RecordingDescription& description, const RecordingLimits& limits = {})
       : folder_(folder), thread_(folder, description, limits) {}
 
+  void mappingBusy(std::int64_t frame_index) noexcept override;
   void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept override;
   void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override;
   void passedOver(std::int64_t index, std::int64_t time_ns) noexcept override;

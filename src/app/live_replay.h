@@ -18,6 +18,7 @@ class RunPublisher;
 
 struct LiveReplay {
   std::optional<Map> map_in;
+  double pace = 1;                    // frames come so many times as fast as their time stamps say
   std::string record_folder;          // empty: not recorded
   RecordingDescription description;   // of the recording
   RunPublisher* publisher = nullptr;  // null: nothing is published

@@ -34,6 +34,7 @@ struct ReplayArguments {
   std::string map_in, map_out;
   bool realtime = false;
   bool lcm = false;
+  double pace = 1;
   std::string record;
   int drawings = 12;
 };
@@ -97,13 +98,13 @@ RunDescription describe(const ReplayArguments& arguments, const Configuration& c
                                           std::to_string(EIGEN_MAJOR_VERSION) + "." +
                                           std::to_string(EIGEN_MINOR_VERSION);
   description.configuration = formatConfiguration(configuration);
-  description.command_line = "edgeslam replay " + arguments.input +
-                             (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
-                             (arguments.map_in.empty() ? "" : " --map-in " + arguments.map_in) +
-                             (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) +
-                             (arguments.realtime ? " --realtime" : "") + (arguments.lcm ? " --lcm" : "") +
-                             (arguments.record.empty() ? "" : " --record " + arguments.record) + " --output " +
-                             arguments.output;
+  description.command_line =
+      "edgeslam replay " + arguments.input +
+      (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
+      (arguments.map_in.empty() ? "" : " --map-in " + arguments.map_in) +
+      (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) + (arguments.realtime ? " --realtime" : "") +
+      (arguments.pace != 1 ? " --pace " + std::to_string(arguments.pace) : "") + (arguments.lcm ? " --lcm" : "") +
+      (arguments.record.empty() ? "" : " --record " + arguments.record) + " --output " + arguments.output;
   return description;
 }
 
@@ -129,6 +130,7 @@ void processAll(FrameSource& source, const Camera& camera, LockstepRun& run) {
 RunDecisions runDecisions(const Decisions& recorded) {
   RunDecisions decisions;
   for (const UpdateTaken& update : recorded.updates) decisions.updates[update.frame_index] = update.number;
+  decisions.mapping_busy.insert(recorded.busy.begin(), recorded.busy.end());
   for (const CorrectionApplied& correction : recorded.corrections) {
     decisions.corrections[correction.message].push_back(correction.number);
     decisions.snapshots.insert(correction.number);
@@ -171,6 +173,7 @@ Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Confi
   LiveReplay replay;
   if (!arguments.map_in.empty()) replay.map_in = loadMap(arguments.map_in, camera);
   replay.record_folder = arguments.record;
+  replay.pace = arguments.pace;
   replay.description = {camera, formatConfiguration(configuration), EDGESLAM_VERSION};
   Progress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
@@ -264,6 +267,9 @@ Configuration configurationOf(const ReplayArguments& arguments, const FrameSourc
 }
 
 int runReplay(const ReplayArguments& arguments) {
+  if (arguments.pace != 1 && !arguments.realtime) {
+    throw InputError("--pace: only what runs live has a pace, add --realtime");
+  }
   if (!arguments.record.empty() && !arguments.realtime) {
     throw InputError("--record: only what runs live can be recorded, add --realtime");
   }
@@ -318,6 +324,11 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   command->add_flag("--realtime", arguments->realtime,
                     "At the pace of the time stamps, as on the robot: what the computer does not manage is dropped");
   command->add_flag("--lcm", arguments->lcm, "With --realtime: publish over LCM, as `edgeslam run` does");
+  command
+      ->add_option("--pace", arguments->pace,
+                   "With --realtime: so many times as fast, 2 makes of a recording at 30 frames/s one at 60")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 20.0));
   command->add_option("--record", arguments->record, "With --realtime: folder for a recording that repeats this run")
       ->check(named);
   command->add_option("--drawings", arguments->drawings, "Frames drawn with edges and tracks in the report")

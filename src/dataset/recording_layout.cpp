@@ -27,12 +27,13 @@ struct LineForm {
   const char* expected;
 };
 
-constexpr std::array<LineForm, 8> line_forms{{
+constexpr std::array<LineForm, 9> line_forms{{
     {DecisionKind::frame, "frame", &Decision::index, &Decision::time_ns, false, "frame INDEX TIME_NS"},
     {DecisionKind::dropped, "dropped", &Decision::index, &Decision::time_ns, false, "dropped INDEX TIME_NS"},
     {DecisionKind::unreadable, "unreadable", &Decision::index, &Decision::time_ns, true,
      "unreadable INDEX TIME_NS REASON"},
     {DecisionKind::update, "update", &Decision::index, &Decision::number, false, "update INDEX NUMBER"},
+    {DecisionKind::busy, "busy", &Decision::index, nullptr, false, "busy INDEX"},
     {DecisionKind::correction, "correction", &Decision::index, &Decision::number, false, "correction MESSAGE NUMBER"},
     {DecisionKind::gap, "gap", &Decision::number, nullptr, false, "gap COUNT"},
     {DecisionKind::stopped, "stopped", nullptr, nullptr, true, "stopped REASON"},
@@ -138,6 +139,10 @@ std::string DecisionOrder::add(const Decision& decision) {
       if (decision.number <= update_number_) return goesBack("the update", decision.number, update_number_);
       update_index_ = decision.index;
       update_number_ = decision.number;
+      break;
+    case DecisionKind::busy:
+      if (decision.index <= busy_index_) return goesBack("the busy frame", decision.index, busy_index_);
+      busy_index_ = decision.index;
       break;
     case DecisionKind::correction:
       if (decision.index < correction_message_) {

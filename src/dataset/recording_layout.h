@@ -36,6 +36,7 @@ enum class DecisionKind {
   dropped,     // "dropped INDEX TIME_NS": was not processed, tracking being behind
   unreadable,  // "unreadable INDEX TIME_NS REASON"
   update,      // "update INDEX NUMBER": before processing frame INDEX, tracking took map update NUMBER
+  busy,        // "busy INDEX": frame INDEX told mapping nothing, mapping being far behind
   correction,  // "correction MESSAGE NUMBER": before handling message MESSAGE, mapping applied correction NUMBER
   gap,         // "gap COUNT": here COUNT decisions or frames are missing, the run cannot be repeated from here on
   stopped,     // "stopped REASON": recording ended before the run did; the last line
@@ -73,6 +74,7 @@ class DecisionOrder {
   bool ended_ = false;
   std::int64_t index_ = -1, time_ns_ = -1;
   std::int64_t update_index_ = 0, update_number_ = -1;
+  std::int64_t busy_index_ = -1;
   std::int64_t correction_message_ = 0, correction_number_ = -1;
 };
 

@@ -146,6 +146,9 @@ void take(const Decision& decision, Recording& recording) {
     case DecisionKind::update:
       decisions.updates.push_back({decision.index, decision.number});
       break;
+    case DecisionKind::busy:
+      decisions.busy.push_back(decision.index);
+      break;
     case DecisionKind::correction:
       decisions.corrections.push_back({decision.index, decision.number});
       break;

@@ -33,9 +33,10 @@ struct Decisions {
   std::vector<UpdateTaken> updates;
   std::vector<CorrectionApplied> corrections;
   std::vector<DroppedFrame> dropped;
-  std::int64_t not_recorded = 0;  // frames and decisions; above 0, the recording does not repeat the run
-  bool complete = false;          // reaches to the run's clean end, and nothing is missing
-  std::string note;               // why it is not complete, for people; empty otherwise
+  std::vector<std::int64_t> busy;  // frames that told mapping nothing, mapping being far behind
+  std::int64_t not_recorded = 0;   // frames and decisions; above 0, the recording does not repeat the run
+  bool complete = false;           // reaches to the run's clean end, and nothing is missing
+  std::string note;                // why it is not complete, for people; empty otherwise
 };
 
 struct RecordedFrame {

@@ -18,9 +18,9 @@ namespace edgeslam {
 
 // A frame or a decision on its way to the recorder. Copying it neither allocates nor copies pixels.
 struct RecordingEntry {
-  DecisionKind kind = DecisionKind::frame;  // any but `gap`, `stopped` and `end`, which the thread writes itself
+  DecisionKind kind = DecisionKind::frame;    // any but `gap`, `stopped` and `end`, which the thread writes itself
   std::shared_ptr<const FrameImages> images;  // of a frame
-  std::int64_t index = 0;  // as in Decision
+  std::int64_t index = 0;                     // as in Decision
   std::int64_t time_ns = 0;
   std::int64_t number = 0;
   std::array<char, 160> reason{};  // of an unreadable frame: up to the first zero

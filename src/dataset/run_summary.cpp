@@ -33,17 +33,22 @@ StageSummary summaryOf(const std::string& name, std::vector<double> times) {
 
 std::vector<StageSummary> allStages(const RunResult& result) {
   std::map<Stage, std::vector<double>> times;
-  std::vector<double> totals;
+  std::vector<double> tracking, totals;
   for (const FrameRecord& frame : result.frames) {
     for (const Stage stage : all_stages) {
       if (frame.times.ran(stage)) times[stage].push_back(frame.times[stage]);
     }
-    if (frame.times.total() > 0) totals.push_back(frame.times.total());
+    const double total = frame.times.total();
+    if (!(total > 0)) continue;
+    tracking.push_back(total - frame.times[Stage::mapping] - frame.times[Stage::places]);
+    totals.push_back(total);
   }
   std::vector<StageSummary> stages;
-  stages.reserve(times.size() + 1);
+  stages.reserve(times.size() + 2);
   for (auto& [stage, values] : times) stages.push_back(summaryOf(stageName(stage), std::move(values)));
-  if (!totals.empty()) stages.push_back(summaryOf("total", std::move(totals)));
+  if (totals.empty()) return stages;
+  stages.push_back(summaryOf("tracking", std::move(tracking)));
+  stages.push_back(summaryOf("total", std::move(totals)));
   return stages;
 }
 
@@ -54,6 +59,19 @@ std::optional<StageSummary> latencyOf(const RunResult& result) {
   }
   if (latencies.empty()) return std::nullopt;
   return summaryOf("latency", std::move(latencies));
+}
+
+// Of all frames captured, dropped ones included: how many had their pose before the next one was due.
+std::optional<double> shareInTime(const RunResult& result) {
+  const auto count = static_cast<std::int64_t>(result.frames.size());
+  if (count < 2 || result.pace <= 0) return std::nullopt;
+  const std::int64_t captured = count + result.dropped_frames;
+  const double interval_ms = 1e-6 * static_cast<double>(result.frames.back().time_ns - result.frames.front().time_ns) /
+                             static_cast<double>(captured - 1) / result.pace;
+  const auto in_time = std::count_if(result.frames.begin(), result.frames.end(), [&](const FrameRecord& frame) {
+    return frame.latency_ms >= 0 && static_cast<double>(frame.latency_ms) <= interval_ms;
+  });
+  return static_cast<double>(in_time) / static_cast<double>(captured);
 }
 
 ordered_json timesJson(const StageSummary& times) {
@@ -148,6 +166,7 @@ RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& g
   if (result.wall_s > 0) summary.real_time_ratio = summary.recording_s / result.wall_s;
   summary.stages = allStages(result);
   summary.latency = latencyOf(result);
+  summary.share_in_time = shareInTime(result);
   summary.has_ground_truth = ground_truth.has_value();
   if (ground_truth) {
     summary.errors.trajectory = errorIfComparable(finalTrajectory(result), *ground_truth);
@@ -183,6 +202,14 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
               {"live", errorJson(summary.errors.live)},
               {"keyframes", errorJson(summary.errors.keyframes)}};
   }
+  ordered_json threads = ordered_json::object();
+  for (const DurationSummary& times : result.thread_durations) {
+    threads[times.name] = {{"count", times.count},
+                           {"mean", times.mean},
+                           {"p50", times.median},
+                           {"p99", times.percentile_99},
+                           {"max", times.max}};
+  }
   return {{"sequence", description.sequence},
           {"input", description.input},
           {"command_line", description.command_line},
@@ -206,7 +233,9 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
           {"events", result.events},
           {"absolute_trajectory_error", errors},
           {"stage_times_ms", stages},
+          {"thread_durations_ms", threads},
           {"latency_ms", summary.latency ? timesJson(*summary.latency) : ordered_json()},
+          {"share_within_frame_interval", optionalJson(summary.share_in_time)},
           {"recording_s", summary.recording_s},
           {"wall_s", summary.wall_s},
           {"real_time_ratio", summary.real_time_ratio},

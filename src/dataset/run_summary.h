@@ -46,9 +46,11 @@ struct RunSummary {
   std::optional<double> first_live_pose_s;       // from the first frame to the first good live pose [s]
   double recording_s = 0;                        // from the first frame to the last [s]
   double wall_s = 0;
-  double real_time_ratio = 0;           // recording_s over wall_s: above 1 is faster than real time
-  std::vector<StageSummary> stages;     // in the order of a frame; "total" (their sum in each frame) last
+  double real_time_ratio = 0;        // recording_s over wall_s: above 1 is faster than real time
+  std::vector<StageSummary> stages;  // in the order of a frame; last "tracking" (the sum of a frame's own) and "total"
   std::optional<StageSummary> latency;  // of a live run: from capture to the pose
+  std::optional<double>
+      share_in_time;  // of a live run: frames with a result before the next was due, over all captured
   bool has_ground_truth = false;
   RunErrors errors;
   std::vector<LoopErrors> loops;  // by closed loop

@@ -15,6 +15,8 @@ class DecisionSink {
   virtual ~DecisionSink() = default;
   // Before frame `frame_index` was processed, tracking took map update `number`.
   virtual void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept = 0;
+  // Frame `frame_index` tells mapping nothing, mapping being far behind.
+  virtual void mappingBusy(std::int64_t frame_index) noexcept = 0;
   // Before message `message` was handled, mapping applied correction `number`.
   virtual void appliedCorrection(std::int64_t message, std::int64_t number) noexcept = 0;
   virtual void passedOver(std::int64_t index, std::int64_t time_ns) noexcept = 0;

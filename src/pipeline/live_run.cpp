@@ -11,6 +11,8 @@ namespace {
 constexpr auto idle_time = std::chrono::milliseconds(1);
 constexpr std::int64_t tick_interval_ns = 100'000'000;
 constexpr std::size_t longest_reason = 256;
+constexpr std::size_t most_waiting_for_a_map = 3;
+constexpr std::size_t least_room = 8;  // in mapping's queue, for a frame to tell it anything
 
 std::int64_t steadyNow_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
@@ -30,7 +32,34 @@ void waitFor(sem_t& semaphore, std::int64_t until_ns) {
   }
 }
 
+// Adds the time from its making to its end.
+class Measured {
+ public:
+  explicit Measured(DurationStatistics& statistics) : statistics_(statistics), start_ns_(steadyNow_ns()) {}
+  ~Measured() { statistics_.add(steadyNow_ns() - start_ns_); }
+  Measured(const Measured&) = delete;
+  Measured& operator=(const Measured&) = delete;
+
+ private:
+  DurationStatistics& statistics_;
+  std::int64_t start_ns_;
+};
+
+ThreadSetup threadSetup(const std::string& name, int priority, int nice, bool batch, int processor) {
+  return {name, priority, nice, batch, processor >= 0 ? std::vector<int>{processor} : std::vector<int>{}};
+}
+
 }  // namespace
+
+LiveOptions liveOptions(const ThreadOptions& options) {
+  LiveOptions live;
+  live.lock_memory = options.lock_memory;
+  live.tracking = threadSetup("tracking", options.tracking_priority, 0, false, options.tracking_processor);
+  live.publishing = threadSetup("publishing", options.publishing_priority, 0, false, -1);
+  live.mapping = threadSetup("mapping", 0, options.mapping_nice, false, options.mapping_processor);
+  live.places = threadSetup("places", 0, options.places_nice, true, options.places_processor);
+  return live;
+}
 
 LiveRun::LiveRun(const Camera& camera, const Settings& settings, const LiveOptions& options, LiveObserver observer,
                  DecisionSink* sink)
@@ -70,6 +99,10 @@ void LiveRun::goOnWith(Map map) {
 }
 
 void LiveRun::start() {
+  if (options_.lock_memory) {
+    std::string problem = lockMemory();
+    if (!problem.empty()) problems_.push_back(std::move(problem));
+  }
   const auto startThread = [&](std::thread& thread, const ThreadSetup& setup, void (LiveRun::*work)()) {
     std::promise<std::string> ready;
     std::future<std::string> problem = ready.get_future();
@@ -119,6 +152,14 @@ LiveCounts LiveRun::counts() const {
   return counts;
 }
 
+std::vector<DurationSummary> LiveRun::durations() const {
+  return {
+      durations_.waiting_for_tracking.summary("waiting for tracking"),     durations_.tracking.summary("tracking"),
+      durations_.waiting_for_mapping.summary("waiting for mapping"),       durations_.mapping.summary("mapping"),
+      durations_.waiting_for_places.summary("waiting for places"),         durations_.places.summary("places"),
+      durations_.waiting_for_publishing.summary("waiting for publishing"), durations_.publishing.summary("publishing")};
+}
+
 // Tracking's thread.
 
 void LiveRun::track() {
@@ -132,26 +173,26 @@ void LiveRun::track() {
 }
 
 void LiveRun::trackFrame(FrameSlot& slot) {
+  durations_.waiting_for_tracking.add(steadyNow_ns() - slot.handed_over_ns);
+  const Measured measured(durations_.tracking);
   PassedOverFrame passed_over;
   while (frames_.nextPassedOver(passed_over)) {
     passed_over_.fetch_add(1, std::memory_order_relaxed);
     if (sink_) sink_->passedOver(passed_over.index, passed_over.time_ns);
   }
-  if (messages_.room() < FrameMessages::most) {
-    passed_over_.fetch_add(1, std::memory_order_relaxed);
-    mapping_behind_.fetch_add(1, std::memory_order_relaxed);
-    if (sink_) sink_->passedOver(slot.index, slot.time_ns);
-    return;
-  }
   takeUpdate(slot.index);
+  const bool mapping_busy = isMappingBusy();
+  if (mapping_busy) mapping_behind_.fetch_add(1, std::memory_order_relaxed);
+  if (mapping_busy && sink_) sink_->mappingBusy(slot.index);
   new_messages_.clear();
   const FrameResult& result = slot.problem.empty()
-                                  ? tracking_.process(slot.index, slot.time_ns, slot.grey, new_messages_)
+                                  ? tracking_.process(slot.index, slot.time_ns, slot.grey, mapping_busy, new_messages_)
                                   : tracking_.skip(slot.index, slot.time_ns, slot.problem);
   if (Published* published = results_.claim()) {
     published->result = result;
     published->result.latency_ms = static_cast<double>(steadyNow_ns() - slot.handed_over_ns) * 1e-6;
     published->problem = slot.problem;
+    published->sent_ns = steadyNow_ns();
     results_.send(published);
     sem_post(&result_ready_);
   } else {
@@ -160,11 +201,18 @@ void LiveRun::trackFrame(FrameSlot& slot) {
   for (MappingMessage& message : new_messages_) {
     MappingMessage* sent = messages_.claim();
     std::swap(*sent, message);
+    sent->sent_ns = steadyNow_ns();
     messages_.send(sent);
   }
   if (sink_ && slot.problem.empty()) sink_->processed(tracking_.images());
   if (sink_ && !slot.problem.empty()) sink_->unreadable(slot.index, slot.time_ns, slot.problem);
   processed_.fetch_add(1, std::memory_order_relaxed);
+}
+
+// Before the map stands, what mapping makes of a frame is of use for as long as the first frame's points are in view.
+bool LiveRun::isMappingBusy() const {
+  if (!tracking_.hasMap()) return messages_.waiting() > most_waiting_for_a_map;
+  return messages_.room() < least_room;
 }
 
 void LiveRun::takeUpdate(std::int64_t frame_index) {
@@ -208,6 +256,8 @@ bool LiveRun::mapOnce() {
     corrections_.release(correction);
     --with_places_;
   } else if (MappingMessage* message = messages_.receive()) {
+    durations_.waiting_for_mapping.add(steadyNow_ns() - message->sent_ns);
+    const Measured measured(durations_.mapping);
     publishUpdate(mapping_.handle(*message));
     message->frame.images.reset();
     message->edges.reset();
@@ -259,6 +309,7 @@ void LiveRun::handSnapshot() {
   if (!sent) return;
   ++with_places_;
   *sent = *mapping_.snapshot();
+  sent->sent_ns = steadyNow_ns();
   snapshots_.send(sent);
 }
 
@@ -273,7 +324,10 @@ void LiveRun::lookAtPlaces() {
       std::this_thread::sleep_for(idle_time);
       continue;
     }
+    durations_.waiting_for_places.add(steadyNow_ns() - snapshot->sent_ns);
+    const std::int64_t start_ns = steadyNow_ns();
     Correction correction = places_.work(*snapshot);
+    durations_.places.add(steadyNow_ns() - start_ns);
     *snapshot = Snapshot();
     if (Correction* sent = corrections_.claim()) {
       *sent = std::move(correction);
@@ -305,6 +359,8 @@ void LiveRun::publish() {
 
 bool LiveRun::publishOnce() {
   if (Published* published = results_.receive()) {
+    durations_.waiting_for_publishing.add(steadyNow_ns() - published->sent_ns);
+    const Measured measured(durations_.publishing);
     if (observer_.frame) observer_.frame(published->result, published->problem);
     results_.release(published);
     return true;

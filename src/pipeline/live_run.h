@@ -14,6 +14,7 @@
 
 #include "pipeline/channel.h"
 #include "pipeline/decision_sink.h"
+#include "pipeline/duration_statistics.h"
 #include "pipeline/frame_slots.h"
 #include "pipeline/mapping_worker.h"
 #include "pipeline/places_worker.h"
@@ -24,11 +25,14 @@
 namespace edgeslam {
 
 struct LiveOptions {
+  bool lock_memory = false;
   ThreadSetup tracking{"tracking", 0, 0, false, {}};
   ThreadSetup publishing{"publishing", 0, 0, false, {}};
   ThreadSetup mapping{"mapping", 0, 0, false, {}};
   ThreadSetup places{"places", 0, 5, true, {}};
 };
+
+LiveOptions liveOptions(const ThreadOptions& options);
 
 // Called by the publishing thread, in the order of the frames.
 struct LiveObserver {
@@ -42,7 +46,7 @@ struct LiveCounts {
   std::int64_t captured = 0;
   std::int64_t processed = 0;
   std::int64_t passed_over = 0;     // a newer frame was there when tracking came to take it
-  std::int64_t mapping_behind = 0;  // of these: mapping's queue was full
+  std::int64_t mapping_behind = 0;  // frames that told mapping nothing, its queue being nearly full
   std::int64_t not_published = 0;   // results for which the publishing queue was full
   std::size_t messages_waiting = 0;
   std::size_t results_waiting = 0;
@@ -78,6 +82,8 @@ class LiveRun {
   void stop(bool settle);
 
   LiveCounts counts() const;
+  // How long the work of the threads took, and how long it waited for them, so far.
+  std::vector<DurationSummary> durations() const;
   // What could not be set up of the threads, a line each. After start().
   std::vector<std::string> problems() const { return problems_; }
   // After stop().
@@ -87,6 +93,13 @@ class LiveRun {
   struct Published {
     FrameResult result;
     std::string problem;
+    std::int64_t sent_ns = 0;  // steady clock
+  };
+  struct Durations {
+    DurationStatistics waiting_for_tracking, tracking;      // added by tracking
+    DurationStatistics waiting_for_mapping, mapping;        // by mapping
+    DurationStatistics waiting_for_places, places;          // by places
+    DurationStatistics waiting_for_publishing, publishing;  // by publishing
   };
   struct Applied {
     std::int64_t message = 0, number = 0;
@@ -95,6 +108,7 @@ class LiveRun {
 
   void track();
   void trackFrame(FrameSlot& slot);
+  bool isMappingBusy() const;
   void takeUpdate(std::int64_t frame_index);
   void tellApplied();
   void map();
@@ -126,6 +140,7 @@ class LiveRun {
   sem_t frame_ready_, result_ready_;
 
   FrameMessages new_messages_;  // tracking's alone
+  Durations durations_;
   std::atomic<Stopping> stopping_{Stopping::no};
   std::atomic<bool> tracking_ended_{false}, mapping_ended_{false}, map_asked_{false};
   std::int64_t with_places_ = 0;  // snapshots whose corrections mapping has not received yet; mapping's alone

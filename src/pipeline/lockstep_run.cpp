@@ -39,7 +39,9 @@ void LockstepRun::goOnWith(Map map) {
 const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
   takeDueUpdate(index);
   messages_.clear();
-  FrameRecord& frame = record_.add(tracking_.process(index, time_ns, grey, messages_), /*unreadable=*/false);
+  const bool mapping_busy = recorded_ && recorded_->mapping_busy.count(index) > 0;
+  FrameRecord& frame =
+      record_.add(tracking_.process(index, time_ns, grey, mapping_busy, messages_), /*unreadable=*/false);
   const auto start = std::chrono::steady_clock::now();
   for (MappingMessage& message : messages_) hand(message);
   frame.times.add(Stage::mapping, millisecondsSince(start));

@@ -26,6 +26,7 @@ struct MappingMessage {
   std::optional<Pose> last_good_pose;  // none before the first
   double seconds_since = 0;            // the last good pose
   bool recover = false;                // its tracks run through the last keyframes: P21 before P22
+  std::int64_t sent_ns = 0;            // steady clock; for statistics alone
 };
 
 // The messages of one frame; their memory is used again for those of the next.
@@ -68,6 +69,7 @@ struct Snapshot {
   std::int64_t number = 0;  // of the keyframe's message
   std::int64_t frame_index = 0;
   std::shared_ptr<const Map> map;
+  std::int64_t sent_ns = 0;  // steady clock; for statistics alone
 };
 
 // Places to mapping: what became of a snapshot.

@@ -1,5 +1,6 @@
 // What a live run decided by the clock, and what is therefore needed to repeat it: which frames were passed over, which
-// update of the map tracking took before which frame, which correction mapping applied before which message.
+// frames told mapping nothing, which update of the map tracking took before which frame, which correction mapping
+// applied before which message.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@ namespace edgeslam {
 
 struct RunDecisions {
   std::map<std::int64_t, std::int64_t> updates;                   // by frame: the update taken before it
+  std::set<std::int64_t> mapping_busy;                            // frames
   std::map<std::int64_t, std::vector<std::int64_t>> corrections;  // by message: those applied before it, in order
   std::set<std::int64_t> snapshots;                               // that places worked on: numbers of the corrections
 };

@@ -10,6 +10,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/pose.h"
+#include "pipeline/duration_statistics.h"
 #include "tracking/stage_times.h"
 
 namespace edgeslam {
@@ -101,6 +102,9 @@ struct RunResult {
   std::int64_t unreadable_frames = 0;
   std::int64_t dropped_frames = 0;  // of a live run
   double wall_s = 0;                // of the whole run
+  double pace = 0;  // of a live run: how many times as fast as the time stamps frames came; 0: it was not one
+  // Of a live run: how long each thread's work took and how long it waited in the queue before it.
+  std::vector<DurationSummary> thread_durations;
 };
 
 }  // namespace edgeslam

@@ -18,6 +18,26 @@ struct PlacesOptions {
   double global_interval_s = 25;       // ... at the latest
 };
 
+// Of the live schedule. Real-time priorities are those of SCHED_FIFO, 1 to 99; 0: the usual scheduling.
+struct ThreadOptions {
+  int capture_priority = 30;
+  int tracking_priority = 20;
+  int publishing_priority = 10;
+  int mapping_nice = 0;
+  int places_nice = 5;  // and in batches
+  // A processor that the thread keeps to, counted from 0; -1: any.
+  int tracking_processor = -1;
+  int mapping_processor = -1;
+  int places_processor = -1;
+  bool lock_memory = false;
+};
+
+// Of the disk, by the flight recorder [MB].
+struct RecordingSpace {
+  double most_megabytes = 4096;
+  double kept_free_megabytes = 256;
+};
+
 struct Settings {
   TrackerOptions tracking;
   MapperOptions mapping;
@@ -29,6 +49,8 @@ struct Settings {
   // makes of a keyframe before the keyframe so many later.
   int view_delay_frames = 2;
   int correction_delay_keyframes = 1;
+  ThreadOptions threads;
+  RecordingSpace recording;
 };
 
 }  // namespace edgeslam

@@ -14,10 +14,10 @@ struct ThreadSetup {
   std::vector<int> processors;  // empty: all
 };
 
-// Empty, or what could not be set and why, in one line.
+// Empty, or what the thread does without and why, in a few words.
 std::string setUpThread(const ThreadSetup& setup);
 
-// Keeps all memory of the process from being swapped out. Empty, or why not.
+// Keeps all memory of the process from being swapped out. Empty, or what it does without and why.
 std::string lockMemory();
 
 }  // namespace edgeslam

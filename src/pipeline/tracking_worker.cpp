@@ -46,15 +46,15 @@ void TrackingWorker::take(MapUpdate& update) {
 }
 
 const FrameResult& TrackingWorker::process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey,
-                                           FrameMessages& messages) {
-  tracker_.track(index, time_ns, grey, outcome_);
+                                           bool mapping_busy, FrameMessages& messages) {
+  tracker_.track(index, time_ns, grey, mapping_busy, outcome_);
   if (outcome_.tells_mapping) std::swap(nextMessage(messages).frame, outcome_.for_mapping);
   makeResult(index, time_ns);
   FrameResult& result = result_;
   if (result.state == TrackingState::lost) {
     ++lost_frames_;
     if (!not_found_.empty()) result.reason.assign("not found again in the map: ").append(not_found_);
-    if (relocalise_ && asked_ < 0 && tracker_.hasLostFrame()) askWhere(time_ns, nextMessage(messages));
+    if (relocalise_ && !mapping_busy && asked_ < 0 && tracker_.hasLostFrame()) askWhere(time_ns, nextMessage(messages));
   }
   if (result.state == TrackingState::tracking) {
     lost_frames_ = 0;

@@ -21,11 +21,16 @@ class TrackingWorker {
   // Between two frames. What is left in `update` is of no use any more.
   void take(MapUpdate& update);
 
-  // The next frame, CV_8U of the camera's size; `messages` gets what mapping is to know. The result holds until the
-  // next frame. Once running, without allocation, lock or system call but reading the clock.
-  const FrameResult& process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey, FrameMessages& messages);
+  // The next frame, CV_8U of the camera's size; `messages` gets what mapping is to know, nothing where it is
+  // `mapping_busy`, so far behind that it can be told nothing. The result holds until the next frame. Once running,
+  // without allocation, lock or system call but reading the clock.
+  const FrameResult& process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey, bool mapping_busy,
+                             FrameMessages& messages);
   // A frame that could not be read.
   const FrameResult& skip(std::int64_t index, std::int64_t time_ns, const std::string& problem);
+
+  // False while a map is being started.
+  bool hasMap() const { return tracker_.view().initialised; }
 
   // Of the frame processed last; shared and never changed again.
   const std::shared_ptr<const FrameImages>& images() const { return tracker_.latestImages(); }

@@ -8,6 +8,8 @@
 namespace edgeslam {
 namespace {
 
+constexpr int most_samples = 640;  // of a level: three unknowns need no more
+
 struct Comparison {
   int count = 0;
   double mean_square = 0;  // of the grey differences less their mean
@@ -60,7 +62,8 @@ std::vector<RotationGrid> makeRotationGrids(const Camera& camera) {
     RotationGrid grid;
     grid.level = level;
     const int columns = camera.width >> level, rows = camera.height >> level;
-    const int spacing = columns * rows > 2400 ? 2 : 1;
+    int spacing = 1;
+    while (columns * rows > most_samples * spacing * spacing) ++spacing;
     for (int y = 1; y + 1 < rows; y += spacing) {
       for (int x = 1; x + 1 < columns; x += spacing) {
         RotationGrid::Sample sample;

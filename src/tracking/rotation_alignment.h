@@ -22,7 +22,7 @@ struct RotationGrid {
   std::vector<Sample> samples;
 };
 
-// Grids for levels 5 to 3, about 1,200 samples each at most.
+// Grids for levels 5 to 3, some 600 samples each at most.
 std::vector<RotationGrid> makeRotationGrids(const Camera& camera);
 
 // to_R_from, from `initial`. Returns `initial` where the images cannot be compared.

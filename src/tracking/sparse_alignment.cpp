@@ -1,6 +1,7 @@
 #include "tracking/sparse_alignment.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "flow/patch_alignment.h"
@@ -21,12 +22,13 @@ struct Patch {
 
 using Patches = std::pmr::vector<Patch>;
 
-Patches makePatches(const Camera& camera, const cv::Mat& image, int level, const AlignmentPoints& points,
-                    std::pmr::memory_resource* memory) {
+// Of every `stride`-th point.
+void makePatches(const Camera& camera, const cv::Mat& image, int level, const AlignmentPoints& points,
+                 std::size_t stride, Patches& patches) {
   const double scale = 1.0 / (1 << level);
-  Patches patches(memory);
-  patches.reserve(points.size());
-  for (const AlignmentPoint& point : points) {
+  patches.clear();
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    const AlignmentPoint& point = points[i];
     Patch& patch = patches.emplace_back();
     const Eigen::Vector2f pixel = point.pixel * static_cast<float>(scale);
     if (!makeTemplate(image, pixel, Eigen::Matrix2f::Identity(), side, patch.appearance)) {
@@ -40,7 +42,6 @@ Patches makePatches(const Camera& camera, const cv::Mat& image, int level, const
     const Eigen::Matrix2d tensor = patch.appearance.normal_matrix.topLeftCorner<2, 2>().cast<double>();
     patch.information.noalias() = patch.pixel_by_motion.transpose() * (tensor * patch.pixel_by_motion);
   }
-  return patches;
 }
 
 struct Comparison {
@@ -79,10 +80,14 @@ Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePy
                    const SparseAlignmentOptions& options, std::pmr::memory_resource* memory) {
   Pose to_T_from = first_start;
   bool compared = false;
+  const auto most = static_cast<std::size_t>(options.most_points);
+  const std::size_t stride = std::max<std::size_t>(1, (points.size() + most - 1) / most);
+  Patches patches(memory);
+  patches.reserve(points.size() / stride + 1);
   for (int level = options.coarsest_level; level >= options.finest_level; --level) {
     const auto index = static_cast<std::size_t>(level);
     if (index >= from.levels.size() || index >= to.levels.size()) continue;
-    const Patches patches = makePatches(camera, from.levels[index], level, points, memory);
+    makePatches(camera, from.levels[index], level, points, stride, patches);
     Comparison best = compare(camera, patches, to.levels[index], level, to_T_from, options.huber);
     if (!compared) {
       const Comparison other = compare(camera, patches, to.levels[index], level, second_start, options.huber);

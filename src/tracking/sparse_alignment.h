@@ -22,8 +22,9 @@ using AlignmentPoints = std::pmr::vector<AlignmentPoint>;
 struct SparseAlignmentOptions {
   int coarsest_level = 4;
   int finest_level = 1;
-  int iterations = 10;  // most steps a level
-  double huber = 12;    // of the grey difference, from where on it counts linearly [grey]
+  int iterations = 10;    // most steps a level
+  int most_points = 300;  // more are thinned out evenly
+  double huber = 12;      // of the grey difference, from where on it counts linearly [grey]
 };
 
 // to_T_from, from the better of the two starts. Returns `first_start` where too few patches can be compared.

@@ -10,7 +10,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::size_t scratch_size = std::size_t{8} << 20;  // three times what frames of 640 x 480 were seen to need
+constexpr std::size_t scratch_size = std::size_t{8} << 20;  // twice what frames of 640 x 480 were seen to need
 constexpr int images_at_start = 8;
 constexpr int edge_maps = 5;  // the current, the last, the lost and the kept frame's, and one that mapping looks at
 constexpr std::size_t most_found_again = 4096;
@@ -59,9 +59,9 @@ void Tracker::takeMemory() {
   choosePoints(square, edges, occupied_, options_.points, choice_workspace_, chosen_);
 }
 
-void Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, TrackingOutcome& outcome) {
+void Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, bool mapping_busy,
+                    TrackingOutcome& outcome) {
   clear(outcome);
-  scratch_.release();
   lost_.images.reset();
   StageClock clock(outcome.times);
   prepare(frame_index, time_ns, grey, clock);
@@ -69,14 +69,14 @@ void Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
     if (lost_since_ns_ < 0) lost_since_ns_ = time_ns;
     return predict(time_ns, "blurred image", outcome);
   }
-  if (!last_.images && !view_.initialised) return startMap("first frame of the map", clock, outcome);
+  if (!last_.images && !view_.initialised) return startMap("first frame of the map", mapping_busy, clock, outcome);
 
   bool located = !isLost(time_ns) && followAndLocate(clock);
   if (!view_.initialised && (!located || static_cast<double>(frame_.tracks.size()) <
                                              options_.restart_share * static_cast<double>(tracks_at_start_))) {
-    return startMap("starting anew: too few of the first frame's points are left", clock, outcome);
+    return startMap("starting anew: too few of the first frame's points are left", mapping_busy, clock, outcome);
   }
-  if (view_.initialised && located) {
+  if (view_.initialised && located && !mapping_busy) {
     const KeyframeDecision decision = judge();
     if (decision.choice == KeyframeChoice::previous_frame) {
       becomeKeyframe(last_, decision.reason, outcome);
@@ -92,7 +92,7 @@ void Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
     reuseMap(frame_);
     clock.finished(Stage::map_reuse);
   }
-  report(outcome);
+  report(mapping_busy, outcome);
   remember();
 }
 
@@ -119,6 +119,7 @@ bool Tracker::isLost(std::int64_t time_ns) const {
 
 // The last frame's tracks followed into this one, and its pose from them (P5, P6, P16, P17).
 bool Tracker::followAndLocate(StageClock& clock) {
+  scratch_.release();
   const FrameImages& from = *last_.images;
   const FrameImages& to = *frame_.images;
   const double scene_depth = medianDepth(last_.tracks, view_, last_.world_T_camera, 1.0, &scratch_);
@@ -200,11 +201,12 @@ void Tracker::dropOutliers(const FramePose& pose) {
 }
 
 void Tracker::reuseMap(TrackedState& frame) {
+  scratch_.release();
   reuseMapPoints(camera_, view_, *frame.images, *frame.edges, frame.world_T_camera,
                  static_cast<std::size_t>(options_.points.count), options_.map_reuse, frame.tracks, &scratch_);
 }
 
-void Tracker::report(TrackingOutcome& outcome) const {
+void Tracker::report(bool mapping_busy, TrackingOutcome& outcome) const {
   outcome.state = view_.initialised ? FrameState::tracking : FrameState::initialising;
   if (!view_.initialised) outcome.reason = view_.waiting_for;
   outcome.world_T_camera = frame_.world_T_camera;
@@ -213,7 +215,7 @@ void Tracker::report(TrackingOutcome& outcome) const {
   outcome.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * frame_.world_T_camera;
   outcome.tracked_points = static_cast<int>(frame_.tracks.size());
   outcome.mapped_points = frame_.inlier_count;
-  if (view_.initialised) return;
+  if (view_.initialised || mapping_busy) return;
   outcome.tells_mapping = true;
   describe(frame_, -1, "", outcome.for_mapping);
 }
@@ -230,7 +232,7 @@ void Tracker::skip(std::int64_t time_ns, const std::string& reason, TrackingOutc
   predict(time_ns, reason, outcome);
 }
 
-void Tracker::predict(std::int64_t time_ns, const std::string& reason, TrackingOutcome& outcome) const {
+void Tracker::predict(std::int64_t time_ns, std::string_view reason, TrackingOutcome& outcome) const {
   outcome.reason = reason;
   if (!last_.images || !view_.initialised) return;
   outcome.state = FrameState::predicted;

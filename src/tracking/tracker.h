@@ -6,6 +6,7 @@
 
 #include <memory_resource>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edges/blur_gate.h"
@@ -36,7 +37,7 @@ struct TrackerOptions {
   MapReuseOptions map_reuse;
   KeyframeOptions keyframes;
   int fewest_tracks = 30;      // fewer are not enough to start a map with
-  double restart_share = 0.5;  // of the first frame's tracks: fewer left, and the initialisation starts anew
+  double restart_share = 0.3;  // of the first frame's tracks: fewer left, and the initialisation starts anew
   int outlier_frames = 4;      // a track whose map point misses the pose so often in a row is dropped
   // The first pose after a loss or blur needs a good part of the points that the last good pose had ...
   double regain_points_share = 0.7;
@@ -82,8 +83,10 @@ class Tracker {
   // Takes over a newer view of the map, between two frames, and leaves the one before in its place.
   void adopt(MapView& view);
 
-  // `grey`: CV_8U of the camera's size. Frames come in the order of their time stamps. `outcome` is written over.
-  void track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, TrackingOutcome& outcome);
+  // `grey`: CV_8U of the camera's size. Frames come in the order of their time stamps. `mapping_busy`: it can be told
+  // nothing now, so that this frame becomes no keyframe. `outcome` is written over.
+  void track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, bool mapping_busy,
+             TrackingOutcome& outcome);
 
   // An unreadable frame: a pose from motion alone.
   void skip(std::int64_t time_ns, const std::string& reason, TrackingOutcome& outcome) const;
@@ -128,13 +131,13 @@ class Tracker {
   int fewestInliers(std::size_t in_view) const;
   void dropOutliers(const FramePose& estimate);
   void reuseMap(TrackedState& frame);
-  void report(TrackingOutcome& outcome) const;
-  void predict(std::int64_t time_ns, const std::string& reason, TrackingOutcome& outcome) const;
+  void report(bool mapping_busy, TrackingOutcome& outcome) const;
+  void predict(std::int64_t time_ns, std::string_view reason, TrackingOutcome& outcome) const;
   void lose(std::int64_t time_ns, const char* reason, TrackingOutcome& outcome);
   Pose predictPose(std::int64_t time_ns) const;
   void remember();
 
-  void startMap(const char* reason, StageClock& clock, TrackingOutcome& outcome);
+  void startMap(const char* reason, bool mapping_busy, StageClock& clock, TrackingOutcome& outcome);
   KeyframeDecision judge() const;
   void becomeKeyframe(TrackedState& frame, const char* reason, TrackingOutcome& outcome);
   void choosePointsIn(TrackedState& frame, KeyframeId keyframe);

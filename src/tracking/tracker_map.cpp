@@ -42,7 +42,12 @@ Track trackOf(const FoundAgain& found) {
 
 }  // namespace
 
-void Tracker::startMap(const char* reason, StageClock& clock, TrackingOutcome& outcome) {
+void Tracker::startMap(const char* reason, bool mapping_busy, StageClock& clock, TrackingOutcome& outcome) {
+  if (mapping_busy) {
+    outcome.reason = "mapping is behind";
+    last_.images.reset();
+    return;
+  }
   next_keyframe_ = 0;
   frame_.tracks.clear();
   frame_.world_T_camera = Pose();

@@ -25,6 +25,7 @@ struct WatchedRun {
 class NoRecorder : public DecisionSink {
  public:
   void tookUpdate(std::int64_t, std::int64_t) noexcept override {}
+  void mappingBusy(std::int64_t) noexcept override {}
   void appliedCorrection(std::int64_t, std::int64_t) noexcept override {}
   void passedOver(std::int64_t, std::int64_t) noexcept override {}
   void processed(const std::shared_ptr<const FrameImages>& images) noexcept override { last_ = images; }
@@ -34,7 +35,7 @@ class NoRecorder : public DecisionSink {
   std::shared_ptr<const FrameImages> last_;
 };
 
-// Each frame waits until the one before is done with, so that none is passed over.
+// Each frame waits until tracking and mapping are done with the one before, so that none is passed over.
 void feed(LiveRun& run, std::int64_t index, std::int64_t time_ns, const cv::Mat& grey, const std::string& problem) {
   FrameSlot& slot = run.nextSlot();
   slot.index = index;
@@ -43,8 +44,9 @@ void feed(LiveRun& run, std::int64_t index, std::int64_t time_ns, const cv::Mat&
   if (problem.empty()) grey.copyTo(slot.grey);
   run.handOver();
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (run.counts().processed + run.counts().passed_over < run.counts().captured &&
-         std::chrono::steady_clock::now() < end) {
+  while (std::chrono::steady_clock::now() < end) {
+    const LiveCounts counts = run.counts();
+    if (counts.processed + counts.passed_over == counts.captured && counts.messages_waiting == 0) return;
     std::this_thread::sleep_for(std::chrono::microseconds(200));
   }
 }

@@ -182,6 +182,11 @@ function drawFigures() {
   drawTable(byId('figures'), 'Key figures', null, rows);
   drawTable(byId('stage-table'), 'Time of each stage [ms]', ['stage', 'frames', 'mean', 'median', '99 %', 'max'],
     Object.entries(summary.stage_times_ms).map(([name, stage]) => [name, whole(stage.frames), ...[stage.mean, stage.p50, stage.p99, stage.max].map((value) => value.toFixed(2))]));
+  const threads = Object.entries(summary.thread_durations_ms);
+  if (threads.length) {
+    drawTable(byId('thread-table'), 'Work of each thread, and what waited for it [ms]', ['', 'times', 'mean', 'median', '99 %', 'max'],
+      threads.map(([name, times]) => [name, whole(times.count), ...[times.mean, times.p50, times.p99, times.max].map((value) => value.toFixed(2))]));
+  }
   drawTable(byId('state-table'), 'Frames in each state', ['state', 'frames', 'share'],
     Object.entries(summary.states).map(([name, count]) => [name, whole(count), summary.frames.total ? percent(count / summary.frames.total) : '-']));
   byId('configuration').textContent = summary.configuration;

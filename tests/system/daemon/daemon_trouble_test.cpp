@@ -94,8 +94,8 @@ TEST_F(DaemonTrouble, FramesFeedTheWatchdog) {
 TEST_F(DaemonTrouble, ARecordingThatMayTakeNoMoreEndsAndPosesGoOn) {
   const std::string recordings = folder_.path("recordings");
   const auto daemon = startOn(parlour_, {"--config", configure("recording: {folder: " + recordings +
-                                                               ", from_start: true, budget_megabytes: 1}\n")});
-  ASSERT_TRUE(daemon->says("the budget of 1000000 bytes is used up")) << daemon->said();
+                                                               ", from_start: true, most_megabytes: 1}\n")});
+  ASSERT_TRUE(daemon->says("the budget of 1048576 bytes is used up")) << daemon->said();
   const std::size_t before = robot_->heard().states.size();
   ASSERT_TRUE(robot_->hears([&](const Heard& heard) { return heard.states.size() > before + 60; })) << daemon->said();
   EXPECT_FALSE(robot_->heard().statuses.back().recording);

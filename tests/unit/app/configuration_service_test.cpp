@@ -28,8 +28,8 @@ const char* const whole =
     "recording:\n"
     "  folder: recordings\n"
     "  from_start: true\n"
-    "  budget_megabytes: 100\n"
-    "  free_megabytes: 50\n"
+    "  most_megabytes: 100\n"
+    "  kept_free_megabytes: 50\n"
     "scale:\n"
     "  largest_sigma: 0.2\n"
     "  metres_per_unit: 1.5\n"
@@ -46,8 +46,8 @@ TEST(ConfigurationService, ReadsEveryKey) {
   EXPECT_TRUE(service.goes_on_with_map);
   EXPECT_EQ(service.recordings_folder, "recordings");
   EXPECT_TRUE(service.records_from_start);
-  EXPECT_EQ(service.recording_megabytes, 100);
-  EXPECT_EQ(service.free_megabytes, 50);
+  EXPECT_EQ(read(whole).settings.recording.most_megabytes, 100);
+  EXPECT_EQ(read(whole).settings.recording.kept_free_megabytes, 50);
   EXPECT_EQ(service.scale.largest_sigma, 0.2);
   EXPECT_EQ(service.scale.metres_per_unit, 1.5);
   EXPECT_EQ(service.scale.sigma, 0.01);
@@ -56,11 +56,10 @@ TEST(ConfigurationService, ReadsEveryKey) {
 TEST(ConfigurationService, WhatIsWrittenReadsBackAsTheSame) {
   const std::string text = formatConfiguration(read(whole));
   EXPECT_EQ(formatConfiguration(read(text)), text);
-  EXPECT_EQ(formatServiceSections(read(whole).service), formatServiceSections(read(text).service));
-  EXPECT_EQ(formatServiceSections(ServiceOptions()), "");
+  EXPECT_EQ(formatServiceSections(read(whole)), formatServiceSections(read(text)));
+  EXPECT_EQ(formatServiceSections(Configuration()), "");
   for (const std::string& key : serviceKeys()) {
-    EXPECT_NE(serviceSectionsDocumentation().find(" " + key.substr(key.find('.') + 1) + ":"), std::string::npos)
-        << key;
+    EXPECT_NE(serviceSectionsDocumentation().find(" " + key.substr(key.find('.') + 1) + ":"), std::string::npos) << key;
   }
 }
 
@@ -69,7 +68,7 @@ TEST(ConfigurationService, WhatIsWrongIsToldByLineAndKey) {
   expectRefused("map:\n  go_on: maybe\n", "2", "map.go_on");
   expectRefused("map:\n  file: [a]\n", "2", "map.file: a text is expected");
   expectRefused("map:\n  file: ''\n", "2", "map.file: a text is expected");
-  expectRefused("recording:\n  budget_megabytes: 0\n", "2", "recording.budget_megabytes: 0 is out of range");
+  expectRefused("recording:\n  most_megabytes: 0\n", "2", "recording.most_megabytes: 0 is out of range");
   expectRefused("scale:\n  metres_per_unit: nan\n", "2", "scale.metres_per_unit");
   expectRefused("lcm:\n  ttl: 256\n", "2", "lcm.ttl: 256 is out of range");
   expectRefused("lcm:\n  url: nonsense\n", "2", "lcm: ");

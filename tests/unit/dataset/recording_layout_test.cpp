@@ -22,6 +22,7 @@ TEST(RecordingLayout, EveryKindOfLineIsReadAsItWasWritten) {
                                         {DecisionKind::unreadable, 7, 5, 0, "a: reason, of  words "},
                                         {DecisionKind::unreadable, 7, 5, 0, ""},
                                         {DecisionKind::update, 12, 0, 4, ""},
+                                        {DecisionKind::busy, 8, 0, 0, ""},
                                         {DecisionKind::correction, 9, 0, 2, ""},
                                         {DecisionKind::gap, 0, 0, 17, ""},
                                         {DecisionKind::stopped, 0, 0, 0, "the disk is full"},
@@ -117,6 +118,8 @@ TEST(RecordingLayout, DecisionsThatGoBackAreRefusedAndLeaveTheOrderAsItWas) {
   EXPECT_NE(add(DecisionKind::update, 1, 0, 4), "");
   EXPECT_EQ(add(DecisionKind::update, 2, 0, 5), "");
   EXPECT_NE(add(DecisionKind::update, 1, 0, 6), "");
+  EXPECT_EQ(add(DecisionKind::busy, 2, 0, 0), "");
+  EXPECT_NE(add(DecisionKind::busy, 2, 0, 0), "") << "once a frame";
   EXPECT_EQ(add(DecisionKind::correction, 2, 0, 0), "");
   EXPECT_NE(add(DecisionKind::correction, 2, 0, 0), "");
   EXPECT_NE(add(DecisionKind::correction, 1, 0, 1), "");

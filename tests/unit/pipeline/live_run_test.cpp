@@ -46,6 +46,7 @@ class KeptDecisions : public DecisionSink {
   void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept override {
     decisions.updates[frame_index] = number;
   }
+  void mappingBusy(std::int64_t frame_index) noexcept override { decisions.mapping_busy.insert(frame_index); }
   void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override {
     decisions.corrections[message].push_back(number);
     decisions.snapshots.insert(number);
@@ -80,6 +81,15 @@ void waitUntilIdle(const LiveRun& live) {
   }
 }
 
+void handFrame(LiveRun& live, int i, const std::string& problem = "") {
+  FrameSlot& slot = live.nextSlot();
+  slot.index = i;
+  slot.time_ns = made().sequence.time(i);
+  slot.problem = problem;
+  made().images[static_cast<std::size_t>(i % frame_count)].copyTo(slot.grey);
+  live.handOver();
+}
+
 // `interval` 0: each frame waits until the one before is done with.
 LiveResult runLive(DecisionSink* sink, milliseconds interval, int frames = frame_count, bool settle = true,
                    int unreadable = -1) {
@@ -90,12 +100,7 @@ LiveResult runLive(DecisionSink* sink, milliseconds interval, int frames = frame
   LiveRun live(made().sequence.camera, Settings(), LiveOptions(), observer, sink);
   live.start();
   for (int i = 0; i < frames; ++i) {
-    FrameSlot& slot = live.nextSlot();
-    slot.index = i;
-    slot.time_ns = made().sequence.time(i);
-    slot.problem = i == unreadable ? "torn" : "";
-    made().images[static_cast<std::size_t>(i)].copyTo(slot.grey);
-    live.handOver();
+    handFrame(live, i, i == unreadable ? "torn" : "");
     if (interval.count() == 0) waitUntilIdle(live);
     std::this_thread::sleep_for(interval);
   }
@@ -173,6 +178,95 @@ TEST(LiveRun, EndsWithinASecondWhateverItIsDoing) {
     const auto took = std::chrono::steady_clock::now() - start - milliseconds(10) * frames;
     EXPECT_LT(took, milliseconds(2000)) << frames << " frames";  // a loaded machine, sanitizers
   }
+}
+
+TEST(LiveRun, AMappingFarBehindIsToldNothingAndNoFrameIsDroppedForIt) {
+  KeptDecisions kept;
+  const LiveResult live = runLive(&kept, milliseconds(5));
+  EXPECT_GT(live.counts.mapping_behind, 0) << "starting a map takes longer than a few frames";
+  EXPECT_EQ(static_cast<std::int64_t>(kept.decisions.mapping_busy.size()), live.counts.mapping_behind);
+  EXPECT_EQ(live.counts.processed + live.counts.passed_over, frame_count);
+  expectSameRun(live.run, repeat(kept));
+}
+
+TEST(LiveRun, ACameraThatBurstsAndPausesGivesARunThatRepeats) {
+  KeptDecisions kept;
+  RunRecord record(made().sequence.camera);
+  LiveObserver observer;
+  observer.frame = [&](const FrameResult& frame, const std::string&) { record.add(frame, false); };
+  observer.report = [&](const MappingReport& report) { record.add(report); };
+  LiveRun live(made().sequence.camera, Settings(), LiveOptions(), observer, &kept);
+  live.start();
+  for (int i = 0; i < frame_count; ++i) {
+    handFrame(live, i);
+    std::this_thread::sleep_for(i % 20 == 19 ? milliseconds(150) : i % 20 > 14 ? milliseconds(0) : milliseconds(20));
+  }
+  live.stop(/*settle=*/true);
+  const LiveCounts counts = live.counts();
+  EXPECT_EQ(counts.processed + counts.passed_over, frame_count);
+  EXPECT_GT(counts.passed_over, 0) << "five frames at once";
+  expectSameRun(record.finish(live.mapper()), repeat(kept));
+}
+
+TEST(LiveRun, APublisherThatIsStuckHoldsNothingUp) {
+  std::atomic<bool> stuck{true};
+  std::atomic<std::int64_t> published{0};
+  LiveObserver observer;
+  observer.frame = [&](const FrameResult&, const std::string&) {
+    while (stuck.load()) std::this_thread::sleep_for(milliseconds(1));
+    ++published;
+  };
+  LiveRun live(made().sequence.camera, Settings(), LiveOptions(), observer, nullptr);
+  live.start();
+  constexpr int more_than_its_queue = 300;
+  for (int i = 0; i < more_than_its_queue; ++i) {
+    handFrame(live, i);
+    waitUntilIdle(live);
+  }
+  EXPECT_EQ(live.counts().processed, more_than_its_queue);
+  EXPECT_GT(live.counts().not_published, 0);
+  stuck = false;
+  live.stop(/*settle=*/true);
+  EXPECT_EQ(published + live.counts().not_published, more_than_its_queue);
+}
+
+TEST(LiveRun, TellsTheWorkAndTheWaitingOfEveryThread) {
+  RunRecord record(made().sequence.camera);
+  LiveRun live(made().sequence.camera, Settings(), LiveOptions(), {}, nullptr);
+  live.start();
+  for (int i = 0; i < 20; ++i) {
+    handFrame(live, i);
+    waitUntilIdle(live);
+  }
+  live.stop(/*settle=*/true);
+  const std::vector<DurationSummary> durations = live.durations();
+  const auto countOf = [&](const std::string& name) {
+    for (const DurationSummary& duration : durations) {
+      if (duration.name == name) return duration.count;
+    }
+    return std::int64_t{-1};
+  };
+  EXPECT_EQ(countOf("waiting for tracking"), 20);
+  EXPECT_EQ(countOf("tracking"), 20);
+  EXPECT_GE(countOf("mapping"), 1);
+  EXPECT_EQ(countOf("waiting for mapping"), countOf("mapping"));
+  EXPECT_EQ(countOf("waiting for places"), countOf("places"));
+  EXPECT_EQ(countOf("publishing"), 20);
+}
+
+TEST(LiveOptions, FollowTheConfiguration) {
+  ThreadOptions threads;
+  threads.tracking_priority = 42;
+  threads.mapping_nice = 7;
+  threads.places_processor = 1;
+  threads.lock_memory = true;
+  const LiveOptions options = liveOptions(threads);
+  EXPECT_EQ(options.tracking.real_time_priority, 42);
+  EXPECT_EQ(options.mapping.nice, 7);
+  EXPECT_EQ(options.places.processors, std::vector<int>{1});
+  EXPECT_TRUE(options.places.batch);
+  EXPECT_TRUE(options.tracking.processors.empty());
+  EXPECT_TRUE(options.lock_memory);
 }
 
 TEST(LiveRun, AnUnreadableFrameIsOneOfTheRun) {

@@ -18,7 +18,7 @@ Pose path(int i) { return walk(i); }
 FrameResult processFrame(TrackingWorker& worker, std::int64_t index, std::int64_t time_ns, const cv::Mat& grey,
                          std::vector<MappingMessage>& messages) {
   FrameMessages of_frame;
-  const FrameResult result = worker.process(index, time_ns, grey, of_frame);
+  const FrameResult result = worker.process(index, time_ns, grey, /*mapping_busy=*/false, of_frame);
   messages.insert(messages.end(), of_frame.begin(), of_frame.end());
   return result;
 }

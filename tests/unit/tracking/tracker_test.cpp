@@ -16,7 +16,7 @@ cv::Mat black() { return cv::Mat(camera.height, camera.width, CV_8U, cv::Scalar(
 
 TrackingOutcome track(Tracker& tracker, std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
   TrackingOutcome outcome;
-  tracker.track(index, time_ns, grey, outcome);
+  tracker.track(index, time_ns, grey, /*mapping_busy=*/false, outcome);
   return outcome;
 }
 
@@ -83,6 +83,23 @@ TEST(Tracker, TheFirstFrameStartsAMap) {
   ASSERT_TRUE(second.tells_mapping);
   EXPECT_EQ(second.for_mapping.keyframe, -1);
   EXPECT_FALSE(second.for_mapping.images);
+}
+
+TEST(Tracker, WhileMappingIsBusyItIsToldNothingAndTrackingGoesOn) {
+  Tracked run(3);
+  TrackingOutcome outcome;
+  for (int i = 4; i < 40; ++i) {
+    run.tracker.track(i, i * interval_ns, imageAt(i), /*mapping_busy=*/true, outcome);
+    ASSERT_EQ(outcome.state, FrameState::tracking) << i << ": " << outcome.reason;
+    ASSERT_FALSE(outcome.tells_mapping) << i;
+  }
+  EXPECT_TRUE(trackFrame(run.tracker, 40).tells_mapping) << "the keyframe that was due long ago";
+
+  Tracker unstarted(camera, TrackerOptions());
+  unstarted.track(0, 0, imageAt(0), /*mapping_busy=*/true, outcome);
+  EXPECT_FALSE(outcome.tells_mapping);
+  EXPECT_EQ(outcome.reason, "mapping is behind");
+  EXPECT_TRUE(trackFrame(unstarted, 1).tells_mapping);
 }
 
 TEST(Tracker, NothingToSeeStartsNoMap) {
