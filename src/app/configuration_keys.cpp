@@ -207,7 +207,6 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"threads.places_processor", &threads.places_processor, "", -1, 1023, "likewise"},
       {"threads.lock_memory", &threads.lock_memory, "", 0, 0, "keeps the program's memory from being swapped out"},
 
-
       heading("recovery", "Track-loss recovery (P21) and relocalisation (P22)"),
       {"recovery.enabled", &settings.mapping.recovery_enabled, "", 0, 0, "off only to measure what it gains"},
       {"recovery.fewest_inliers", &settings.mapping.recovery.fewest_inliers, "points", 10, 10000,
