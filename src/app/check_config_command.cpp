@@ -6,7 +6,9 @@
 
 #include "app/command_line.h"
 #include "app/configuration.h"
+#include "app/configuration_capture.h"
 #include "app/configuration_keys.h"
+#include "app/configuration_service.h"
 #include "dataset/calibration_file.h"
 
 namespace edgeslam {
@@ -34,6 +36,7 @@ void listDifferences(const Configuration& configuration) {
   std::cout << configuration.source << ": a good configuration; "
             << (changes.empty() ? "all settings are the defaults" : "what differs from the defaults:") << "\n"
             << changes;
+  std::cout << formatCaptureSection(configuration.capture) << formatServiceSections(configuration);
   if (configuration.camera) {
     listCamera(*configuration.camera);
   } else {

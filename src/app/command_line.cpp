@@ -10,9 +10,13 @@
 #include <new>
 #include <string>
 
+#include "app/cameras_command.h"
 #include "app/check_config_command.h"
 #include "app/evaluate_command.h"
+#include "app/listen_command.h"
+#include "app/record_command.h"
 #include "app/replay_command.h"
+#include "app/run_command.h"
 #include "app/simulate_command.h"
 #include "edgeslam/input_error.h"
 
@@ -38,10 +42,14 @@ int parseAndRun(int argc, const char* const* argv) {
   app.set_version_flag("--version", std::string("edgeslam ") + EDGESLAM_VERSION);
   app.require_subcommand(1);
   app.footer("Exit codes: 0 done, 1 the run failed, 2 wrong use or bad input.");
+  addRunCommand(app, exit_code);
   addReplayCommand(app, exit_code);
   addEvaluateCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
+  addListenCommand(app, exit_code);
   addCheckConfigCommand(app, exit_code);
+  addCamerasCommand(app, exit_code);
+  addRecordCommand(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

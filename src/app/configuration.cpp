@@ -9,7 +9,9 @@
 #include <set>
 
 #include "app/configuration_camera.h"
+#include "app/configuration_capture.h"
 #include "app/configuration_keys.h"
+#include "app/configuration_service.h"
 #include "app/configuration_suggestion.h"
 
 namespace edgeslam {
@@ -43,7 +45,10 @@ class Reader {
       if (!key.isHeading()) names_.push_back(key.path);
     }
     for (const std::string& name : cameraKeys()) names_.push_back(name);
-    sections_.insert("camera");
+    for (const std::string& name : captureKeys()) names_.push_back(name);
+    for (const std::string& name : serviceKeys()) names_.push_back(name);
+    sections_.insert({"camera", "capture"});
+    sections_.insert(serviceSections().begin(), serviceSections().end());
   }
 
   void readDocument(const YAML::Node& document) {
@@ -96,12 +101,23 @@ class Reader {
     if (section == "camera") {
       readCameraSection(node, configuration_, [this](int at, const std::string& problem) { tell(at, problem); });
     }
+    if (section == "capture") {
+      readCaptureSection(node, configuration_.capture,
+                         [this](int at, const std::string& problem) { tell(at, problem); });
+    }
+    const std::vector<std::string>& sections = serviceSections();
+    if (std::find(sections.begin(), sections.end(), section) != sections.end()) readServiceSection(section, node);
+  }
+
+  void readServiceSection(const std::string& section, const YAML::Node& node) {
+    edgeslam::readServiceSection(section, node, configuration_,
+                                 [this](int at, const std::string& problem) { tell(at, problem); });
   }
 
   void readKey(const std::string& name, int line, const YAML::Node& value) {
     if (std::find(names_.begin(), names_.end(), name) == names_.end()) return tellUnknown(line, name);
     const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const auto& k) { return k.path == name; });
-    if (key == keys_.end()) return;  // of the camera's section
+    if (key == keys_.end()) return;  // of a section with a reader of its own
     std::string wrong;
     if (!value.IsScalar()) {
       wrong = value.IsNull() ? "has no value" : "a list or mapping";
@@ -187,7 +203,8 @@ bool isCalibrationFile(const std::string& path) {
 }
 
 std::string formatConfiguration(const Configuration& configuration) {
-  std::string text = formatCameraSection(configuration);
+  std::string text = formatCameraSection(configuration) + formatCaptureSection(configuration.capture) +
+                     formatServiceSections(configuration);
   appendSettings(text, configuration.settings, false);
   return text;
 }
@@ -199,7 +216,7 @@ std::string defaultConfigurationText() {
       "# `edgeslam check-config FILE` says what is wrong with a file, or what it changes. Lengths of the scene are in "
       "map units,\n"
       "# a sigma is a standard deviation.\n\n";
-  text += cameraSectionDocumentation();
+  text += cameraSectionDocumentation() + captureSectionDocumentation() + serviceSectionsDocumentation();
   appendSettings(text, Settings{}, true);
   return text;
 }

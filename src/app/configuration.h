@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "app/scale_from_distance.h"
+#include "drivers/frame_capture/camera_options.h"
+#include "drivers/lcm/lcm_options.h"
 #include "edgeslam/input_error.h"
 #include "geometry/camera.h"
 #include "geometry/pose.h"
@@ -12,11 +15,24 @@
 
 namespace edgeslam {
 
+// How `edgeslam run` publishes, and what it keeps on the disk.
+struct ServiceOptions {
+  LcmOptions lcm;
+  double map_interval_s = 5;      // SLAM_MAP at most so often where the map changed; 0: on request only
+  std::string map_file;           // written at the end, on SIGHUP and on command; empty: nowhere
+  bool goes_on_with_map = false;  // at the start, with the map in the file, where there is one
+  std::string recordings_folder;  // for a folder a recording; empty: no command begins one
+  bool records_from_start = false;
+  ScaleOptions scale;
+};
+
 struct Configuration {
   Settings settings;
   std::optional<Camera> camera;  // where the file gives one
   Pose body_T_camera;            // of the camera on the robot, translation [m]; the identity unless the file gives it
-  std::string source;            // path of the file; empty for the defaults
+  CameraOptions capture;         // the live camera
+  ServiceOptions service;
+  std::string source;  // path of the file; empty for the defaults
 };
 
 // An empty file gives the defaults. Throws InputError `FILE:LINE: KEY: ...` at the first problem.

@@ -207,11 +207,6 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"threads.places_processor", &threads.places_processor, "", -1, 1023, "likewise"},
       {"threads.lock_memory", &threads.lock_memory, "", 0, 0, "keeps the program's memory from being swapped out"},
 
-      heading("recording", "Flight recorder (replay --realtime --record): space on the disk"),
-      {"recording.most_megabytes", &settings.recording.most_megabytes, "MB", 1, 1e9, "most that a recording takes"},
-      {"recording.kept_free_megabytes", &settings.recording.kept_free_megabytes, "MB", 0, 1e9,
-       "left free for others; at less the recording ends"},
-
       heading("recovery", "Track-loss recovery (P21) and relocalisation (P22)"),
       {"recovery.enabled", &settings.mapping.recovery_enabled, "", 0, 0, "off only to measure what it gains"},
       {"recovery.fewest_inliers", &settings.mapping.recovery.fewest_inliers, "points", 10, 10000,

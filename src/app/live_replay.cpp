@@ -6,8 +6,9 @@
 #include <thread>
 #include <utility>
 
+#include "app/flight_recorder.h"
 #include "app/frame_problem.h"
-#include "dataset/recording_thread.h"
+#include "app/run_publisher.h"
 #include "pipeline/live_run.h"
 #include "pipeline/run_record.h"
 
@@ -15,53 +16,6 @@ namespace edgeslam {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::int64_t bytesOf(double megabytes) { return static_cast<std::int64_t>(megabytes * (1 << 20)); }
-
-// Hands the run's decisions to the flight recorder.
-class Recorder : public DecisionSink {
- public:
-  Recorder(const std::string& folder, const RecordingDescription& description, const RecordingSpace& space)
-      : thread_(folder, description, {bytesOf(space.most_megabytes), bytesOf(space.kept_free_megabytes)}) {}
-
-  void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept override {
-    postNumbered(DecisionKind::update, frame_index, number);
-  }
-  void mappingBusy(std::int64_t frame_index) noexcept override { postNumbered(DecisionKind::busy, frame_index, 0); }
-  void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override {
-    postNumbered(DecisionKind::correction, message, number);
-  }
-  void passedOver(std::int64_t index, std::int64_t time_ns) noexcept override {
-    RecordingEntry entry;
-    entry.kind = DecisionKind::dropped;
-    entry.index = index;
-    entry.time_ns = time_ns;
-    thread_.post(std::move(entry));
-  }
-  void processed(const std::shared_ptr<const FrameImages>& images) noexcept override {
-    RecordingEntry entry;
-    entry.images = images;
-    entry.index = images->frame_index;
-    entry.time_ns = images->time_ns;
-    thread_.post(std::move(entry));
-  }
-  void unreadable(std::int64_t index, std::int64_t time_ns, const std::string& problem) noexcept override {
-    thread_.post(unreadableFrameEntry(index, time_ns, problem));
-  }
-
-  RecordingStatus stop() { return thread_.stop(); }
-
- private:
-  void postNumbered(DecisionKind kind, std::int64_t index, std::int64_t number) noexcept {
-    RecordingEntry entry;
-    entry.kind = kind;
-    entry.index = index;
-    entry.number = number;
-    thread_.post(std::move(entry));
-  }
-
-  RecordingThread thread_;
-};
 
 // One line for all that was not allowed.
 void tell(const std::vector<std::string>& problems) {
@@ -95,21 +49,31 @@ void feed(FrameSource& source, const Camera& camera, double pace, LiveRun& run) 
 
 LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Settings& settings,
                             const LiveReplay& replay) {
-  std::unique_ptr<Recorder> recorder;
-  if (!replay.record_folder.empty())
-    recorder = std::make_unique<Recorder>(replay.record_folder, replay.description, settings.recording);
+  std::shared_ptr<FlightRecorder> recorder;
+  if (!replay.record_folder.empty()) {
+    recorder =
+        std::make_shared<FlightRecorder>(replay.record_folder, replay.description, recordingLimits(settings.recording));
+  }
   RunRecord record(camera);
   LiveObserver observer;
   observer.frame = [&](const FrameResult& result, const std::string& problem) {
     record.add(result, !problem.empty());
+    if (replay.publisher) replay.publisher->frame(result, problem);
     if (replay.progress) replay.progress(result, problem);
   };
-  observer.report = [&](const MappingReport& report) { record.add(report); };
+  observer.report = [&](const MappingReport& report) {
+    record.add(report);
+    if (replay.publisher) replay.publisher->report(report);
+  };
+  if (replay.publisher) observer.tick = [&] { replay.publisher->tick(); };
 
   LiveRun run(camera, settings, liveOptions(settings.threads), observer, recorder.get());
   if (replay.map_in) {
     record.goOnFrom(replay.map_in->keyframes.back().id + 1);
     run.goOnWith(*replay.map_in);
+  }
+  if (replay.publisher) {
+    replay.publisher->begin(run, recorder, replay.map_in ? RunStart::saved_map : RunStart::new_map);
   }
   run.start();
   std::vector<std::string> problems = run.problems();
@@ -119,6 +83,7 @@ LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Set
   feed(source, camera, replay.pace, run);
   setUpThread({"edgeslam", 0, 0, false, {}});
   run.stop(/*settle=*/true);
+  if (replay.publisher) replay.publisher->end();
 
   LiveReplayResult result;
   const LiveCounts counts = run.counts();

@@ -14,11 +14,14 @@
 
 namespace edgeslam {
 
+class RunPublisher;
+
 struct LiveReplay {
   std::optional<Map> map_in;
-  double pace = 1;                   // frames come so many times as fast as their time stamps say
-  std::string record_folder;         // empty: not recorded
-  RecordingDescription description;  // of the recording
+  double pace = 1;                    // frames come so many times as fast as their time stamps say
+  std::string record_folder;          // empty: not recorded
+  RecordingDescription description;   // of the recording
+  RunPublisher* publisher = nullptr;  // null: nothing is published
   // Called for each frame, in order, by another thread.
   std::function<void(const FrameResult&, const std::string& problem)> progress;
 };

@@ -16,6 +16,7 @@
 #include "app/configuration.h"
 #include "app/frame_problem.h"
 #include "app/live_replay.h"
+#include "app/run_publisher.h"
 #include "dataset/evaluation.h"
 #include "dataset/frame_source.h"
 #include "dataset/recording_source.h"
@@ -32,6 +33,7 @@ struct ReplayArguments {
   std::string output = "result";
   std::string map_in, map_out;
   bool realtime = false;
+  bool lcm = false;
   double pace = 1;
   std::string record;
   int drawings = 12;
@@ -101,7 +103,7 @@ RunDescription describe(const ReplayArguments& arguments, const Configuration& c
       (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
       (arguments.map_in.empty() ? "" : " --map-in " + arguments.map_in) +
       (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) + (arguments.realtime ? " --realtime" : "") +
-      (arguments.pace != 1 ? " --pace " + std::to_string(arguments.pace) : "") +
+      (arguments.pace != 1 ? " --pace " + std::to_string(arguments.pace) : "") + (arguments.lcm ? " --lcm" : "") +
       (arguments.record.empty() ? "" : " --record " + arguments.record) + " --output " + arguments.output;
   return description;
 }
@@ -142,6 +144,14 @@ struct Replayed {
   Map map;
 };
 
+// A recording brings the map that its run went on with.
+std::string mapToGoOnWith(const ReplayArguments& arguments, const FrameSource& source) {
+  if (!arguments.map_in.empty()) return arguments.map_in;
+  const auto* recording = dynamic_cast<const RecordingSource*>(&source);
+  const std::string brought = recording ? recording->recording().folder + "/" + recording_map_name : "";
+  return !brought.empty() && std::filesystem::exists(brought) ? brought : "";
+}
+
 Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Settings& settings,
                           const ReplayArguments& arguments) {
   LockstepRun run(camera, settings, source.size(), arguments.drawings);
@@ -150,7 +160,7 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
     if (!decisions.note.empty()) std::cerr << "edgeslam: " << decisions.note << "\n";
     if (decisions.not_recorded == 0) run.repeat(runDecisions(decisions));
   }
-  if (!arguments.map_in.empty()) run.goOnWith(loadMap(arguments.map_in, camera));
+  if (const std::string map = mapToGoOnWith(arguments, source); !map.empty()) run.goOnWith(loadMap(map, camera));
   processAll(source, camera, run);
   Replayed replayed;
   replayed.result = run.finish();
@@ -172,6 +182,11 @@ Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Confi
     if (!problem.empty()) tellSkipped(frame.index, problem, progress);
     progress.show(frame, count, static_cast<double>(frame.time_ns - first_ns) * 1e-9);
   };
+  CaptureLink link;
+  EventLog log(std::cerr);
+  std::unique_ptr<RunPublisher> publisher;
+  if (arguments.lcm) publisher = std::make_unique<RunPublisher>(publishingSetup(configuration, camera), link, log);
+  replay.publisher = publisher.get();
   LiveReplayResult live = replayLive(source, camera, configuration.settings, replay);
   progress.end();
   if (!live.recording.empty()) std::cerr << "edgeslam: " << arguments.record << ": " << live.recording << "\n";
@@ -258,6 +273,9 @@ int runReplay(const ReplayArguments& arguments) {
   if (!arguments.record.empty() && !arguments.realtime) {
     throw InputError("--record: only what runs live can be recorded, add --realtime");
   }
+  if (arguments.lcm && !arguments.realtime) {
+    throw InputError("--lcm: only what runs live is published, add --realtime");
+  }
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
   const Configuration configuration = configurationOf(arguments, *source);
   const Camera camera = cameraOf(*source, configuration, arguments.input);
@@ -305,6 +323,7 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   command->add_option("--map-out", arguments->map_out, "File to save the map to at the end")->check(named);
   command->add_flag("--realtime", arguments->realtime,
                     "At the pace of the time stamps, as on the robot: what the computer does not manage is dropped");
+  command->add_flag("--lcm", arguments->lcm, "With --realtime: publish over LCM, as `edgeslam run` does");
   command
       ->add_option("--pace", arguments->pace,
                    "With --realtime: so many times as fast, 2 makes of a recording at 30 frames/s one at 60")

@@ -4,6 +4,7 @@
 //   rgb.txt                       "time-stamp file" a line [s], only files that the disk has confirmed
 //   camera.yaml                   the calibration, as readCalibration reads it
 //   edgeslam.yaml                 the configuration of the run
+//   map_at_start.map              the map that the run went on with, where there was one (map/map_file.h)
 //   recording.txt                 versions of the layout and of the program; its presence makes the folder a recording
 //   decisions.txt                 what the live run did with which frame, one line a decision, see Decision
 #pragma once
@@ -23,6 +24,7 @@ constexpr const char* recording_decisions_name = "decisions.txt";
 constexpr const char* recording_list_name = "rgb.txt";
 constexpr const char* recording_camera_name = "camera.yaml";
 constexpr const char* recording_configuration_name = "edgeslam.yaml";
+constexpr const char* recording_map_name = "map_at_start.map";
 constexpr const char* recording_frames_name = "rgb";
 
 // "1305031102.175304000.png", in rgb/.

@@ -9,6 +9,7 @@ namespace edgeslam {
 namespace {
 
 constexpr auto idle_time = std::chrono::milliseconds(1);
+constexpr std::int64_t tick_interval_ns = 100'000'000;
 constexpr std::size_t longest_reason = 256;
 constexpr std::size_t most_waiting_for_a_map = 3;
 constexpr std::size_t least_room = 8;  // in mapping's queue, for a frame to tell it anything
@@ -20,6 +21,14 @@ std::int64_t steadyNow_ns() {
 
 void waitFor(sem_t& semaphore) {
   while (sem_wait(&semaphore) != 0 && errno == EINTR) {
+  }
+}
+
+// Until the steady clock says so, at the latest.
+void waitFor(sem_t& semaphore, std::int64_t until_ns) {
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  const timespec until{static_cast<time_t>(until_ns / second_ns), static_cast<long>(until_ns % second_ns)};
+  while (sem_clockwait(&semaphore, CLOCK_MONOTONIC, &until) != 0 && errno == EINTR) {
   }
 }
 
@@ -86,6 +95,7 @@ void LiveRun::goOnWith(Map map) {
   const PointId first_free_point = firstFreePoint(map);
   mapping_.goOnWith(std::move(map));
   tracking_.goOnWith(mapping_.mapper().view(), first_free_point);
+  countMap();
 }
 
 void LiveRun::start() {
@@ -135,6 +145,10 @@ LiveCounts LiveRun::counts() const {
   counts.mapping_behind = mapping_behind_.load(std::memory_order_relaxed);
   counts.not_published = not_published_.load(std::memory_order_relaxed);
   counts.messages_waiting = messages_.waiting();
+  counts.results_waiting = results_.waiting();
+  counts.map_changes = map_changes_.load(std::memory_order_relaxed);
+  counts.keyframes = keyframes_.load(std::memory_order_relaxed);
+  counts.points = points_.load(std::memory_order_relaxed);
   return counts;
 }
 
@@ -223,7 +237,10 @@ void LiveRun::map() {
     const bool tracking_ended = tracking_ended_.load(std::memory_order_acquire);
     const bool at_once = stopping_.load(std::memory_order_acquire) == Stopping::at_once;
     if (at_once && tracking_ended) break;
-    if (mapOnce()) continue;
+    const bool changed = mapOnce();
+    if (changed) countMap();
+    if (map_asked_.load(std::memory_order_acquire)) reportMap();
+    if (changed) continue;
     if (tracking_ended && with_places_ == 0) break;
     std::this_thread::sleep_for(idle_time);
   }
@@ -266,6 +283,25 @@ void LiveRun::publishUpdate(std::optional<MapUpdate> update) {
   updates_.publish();
 }
 
+void LiveRun::countMap() {
+  const Mapper& mapper = mapping_.mapper();
+  map_changes_.fetch_add(1, std::memory_order_relaxed);
+  keyframes_.store(mapper.initialised() ? mapper.map().keyframes.size() : 0, std::memory_order_relaxed);
+  points_.store(mapper.initialised() ? mapper.map().points.size() : 0, std::memory_order_relaxed);
+}
+
+// Asked for again where there is no room now.
+void LiveRun::reportMap() {
+  MappingReport* sent = reports_.claim();
+  if (!sent) return;
+  map_asked_.store(false, std::memory_order_release);
+  *sent = MappingReport();
+  const Mapper& mapper = mapping_.mapper();
+  sent->map = std::make_shared<const Map>(mapper.initialised() ? mapper.map() : Map());
+  reports_.send(sent);
+  sem_post(&result_ready_);
+}
+
 // Places works on one snapshot at a time; keyframes that come meanwhile are in the next one.
 void LiveRun::handSnapshot() {
   if (!mapping_.hasNewKeyframe()) return;
@@ -305,9 +341,14 @@ void LiveRun::lookAtPlaces() {
 // Publishing's thread.
 
 void LiveRun::publish() {
+  std::int64_t next_tick_ns = steadyNow_ns();
   while (true) {
-    waitFor(result_ready_);
+    waitFor(result_ready_, next_tick_ns);
     while (publishOnce()) {
+    }
+    if (steadyNow_ns() >= next_tick_ns) {
+      if (observer_.tick) observer_.tick();
+      next_tick_ns = steadyNow_ns() + tick_interval_ns;
     }
     if (mapping_ended_.load(std::memory_order_acquire) && tracking_ended_.load(std::memory_order_acquire) &&
         results_.waiting() == 0 && reports_.waiting() == 0) {
@@ -326,6 +367,7 @@ bool LiveRun::publishOnce() {
   }
   if (MappingReport* report = reports_.receive()) {
     if (observer_.report) observer_.report(*report);
+    report->map.reset();
     reports_.release(report);
     return true;
   }

@@ -38,6 +38,7 @@ LiveOptions liveOptions(const ThreadOptions& options);
 struct LiveObserver {
   std::function<void(const FrameResult&, const std::string& problem)> frame;  // `problem`: why it could not be read
   std::function<void(const MappingReport&)> report;
+  std::function<void()> tick;  // each 100 ms or so, frames or not
 };
 
 // Counters of a run, as of now.
@@ -48,6 +49,10 @@ struct LiveCounts {
   std::int64_t mapping_behind = 0;  // frames that told mapping nothing, its queue being nearly full
   std::int64_t not_published = 0;   // results for which the publishing queue was full
   std::size_t messages_waiting = 0;
+  std::size_t results_waiting = 0;
+  std::int64_t map_changes = 0;  // messages and corrections that mapping took in
+  std::size_t keyframes = 0;     // of the map; 0 while there is none
+  std::size_t points = 0;
 };
 
 class LiveRun {
@@ -67,6 +72,10 @@ class LiveRun {
   // The capture thread's: fill the slot, then hand it over. Never waits.
   FrameSlot& nextSlot() { return frames_.writing(); }
   void handOver();
+
+  // From any thread: the map as it is comes in a report, as soon as mapping is between two messages; without keyframes
+  // where there is none yet.
+  void askForMap() { map_asked_.store(true, std::memory_order_release); }
 
   // No frames are handed over any more. `settle`: mapping and places finish what they were given; otherwise they leave
   // it where it is, within 1 s. The map is final then.
@@ -105,6 +114,8 @@ class LiveRun {
   void map();
   bool mapOnce();
   void publishUpdate(std::optional<MapUpdate> update);
+  void countMap();
+  void reportMap();
   void handSnapshot();
   void lookAtPlaces();
   void publish();
@@ -131,9 +142,11 @@ class LiveRun {
   FrameMessages new_messages_;  // tracking's alone
   Durations durations_;
   std::atomic<Stopping> stopping_{Stopping::no};
-  std::atomic<bool> tracking_ended_{false}, mapping_ended_{false};
+  std::atomic<bool> tracking_ended_{false}, mapping_ended_{false}, map_asked_{false};
   std::int64_t with_places_ = 0;  // snapshots whose corrections mapping has not received yet; mapping's alone
   std::atomic<std::int64_t> captured_{0}, processed_{0}, passed_over_{0}, mapping_behind_{0}, not_published_{0};
+  std::atomic<std::int64_t> map_changes_{0};
+  std::atomic<std::size_t> keyframes_{0}, points_{0};
   std::vector<std::string> problems_;
   std::thread tracking_thread_, mapping_thread_, places_thread_, publishing_thread_;
 };

@@ -53,6 +53,7 @@ std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera
                      [](const MapPoint* a, const MapPoint* b) { return a->order < b->order; });
     for (const MapPoint* point : points) {
       MapPointRecord record;
+      record.id = point->id;
       record.position = worldPosition(map, *point);
       record.chain = chain_number;
       record.order = point->order;

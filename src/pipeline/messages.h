@@ -92,6 +92,7 @@ struct MappingReport {
   std::vector<std::string> events;
   std::vector<CulledKeyframe> culled;
   std::optional<ClosedLoop> loop;
+  std::shared_ptr<const Map> map;  // where it was asked for; null otherwise
 };
 
 }  // namespace edgeslam

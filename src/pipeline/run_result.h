@@ -66,6 +66,7 @@ struct MapPointRecord {
   int order = 0;                // place along the chain
   float depth_sigma_ratio = 0;  // standard deviation of the depth over the depth
   unsigned char grey = 0;       // of the image there
+  std::int64_t id = 0;          // in the map
 };
 
 // A frame with its edges and tracks, for the report.

@@ -276,5 +276,46 @@ TEST(LiveRun, AnUnreadableFrameIsOneOfTheRun) {
   EXPECT_EQ(live.run.unreadable_frames, 1);
 }
 
+TEST(LiveRun, TicksWithoutFramesAndTellsItsMap) {
+  std::atomic<int> ticks{0};
+  std::vector<std::shared_ptr<const Map>> maps;  // the publishing thread's
+  std::atomic<std::size_t> map_count{0};
+  LiveObserver observer;
+  observer.tick = [&] { ++ticks; };
+  observer.report = [&](const MappingReport& report) {
+    if (!report.map) return;
+    maps.push_back(report.map);
+    ++map_count;
+  };
+  LiveRun live(made().sequence.camera, Settings(), LiveOptions(), observer, nullptr);
+  live.start();
+  const auto soon = [](const auto& condition) {
+    for (int i = 0; i < 30000 && !condition(); ++i) std::this_thread::sleep_for(milliseconds(1));
+    return condition();
+  };
+  live.askForMap();
+  EXPECT_TRUE(soon([&] { return ticks >= 3 && map_count == 1; }));
+  EXPECT_EQ(live.counts().map_changes, 0);
+  for (int i = 0; i < 40; ++i) {
+    FrameSlot& slot = live.nextSlot();
+    slot.index = i;
+    slot.time_ns = made().sequence.time(i);
+    made().images[static_cast<std::size_t>(i)].copyTo(slot.grey);
+    live.handOver();
+    waitUntilIdle(live);
+  }
+  live.askForMap();
+  EXPECT_TRUE(soon([&] { return map_count == 2; }));
+  live.stop(/*settle=*/true);
+  const LiveCounts counts = live.counts();
+  ASSERT_EQ(maps.size(), 2U);
+  EXPECT_TRUE(maps[0]->points.empty()) << "there was none yet";
+  EXPECT_GT(counts.keyframes, 1U);
+  EXPECT_EQ(counts.keyframes, live.mapper().map().keyframes.size());
+  EXPECT_EQ(counts.points, live.mapper().map().points.size());
+  EXPECT_GT(maps[1]->points.size(), 50U);
+  EXPECT_GT(counts.map_changes, 5);
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -1,0 +1,89 @@
+#include "drivers/lcm/body_pose.h"
+
+#include <cmath>
+
+namespace edgeslam {
+namespace {
+
+// In the unit of the messages.
+Pose scaled(const Pose& pose, const ScaleState& scale) {
+  return {pose.rotation, scale.metres_per_unit * pose.translation};
+}
+
+Pose cameraOnBody(const RobotSetup& robot) {
+  Pose body_T_camera = robot.body_T_camera;
+  if (robot.scale.kind == ScaleKind::unknown) body_T_camera.translation.setZero();
+  return body_T_camera;
+}
+
+bool isKnown(const Matrix6d& covariance) { return covariance.allFinite() && covariance.diagonal().minCoeff() > 0; }
+
+Pose motionOfCamera(const MeasuredPose& before, const MeasuredPose& now) {
+  if (before.reference >= 0 && before.reference == now.reference) {
+    return before.reference_T_camera.inverse() * now.reference_T_camera;
+  }
+  return before.world_T_camera.inverse() * now.world_T_camera;
+}
+
+}  // namespace
+
+bool hasUsablePose(const FrameResult& result) {
+  const Pose& pose = result.world_T_camera;
+  return result.has_pose && pose.translation.allFinite() && pose.rotation.coeffs().allFinite() &&
+         pose.rotation.norm() > 1e-3;
+}
+
+std::optional<MeasuredPose> measuredPose(const FrameResult& result) {
+  if (!isGoodPose(result.state) || !hasUsablePose(result)) return std::nullopt;
+  MeasuredPose measured;
+  measured.time_ns = result.time_ns;
+  measured.world_T_camera = {result.world_T_camera.rotation.normalized(), result.world_T_camera.translation};
+  measured.covariance_camera = result.covariance;
+  const Pose& hanging = result.reference_T_camera;
+  if (hanging.translation.allFinite() && hanging.rotation.coeffs().allFinite() && hanging.rotation.norm() > 1e-3) {
+    measured.reference = result.reference;
+    measured.reference_T_camera = {hanging.rotation.normalized(), hanging.translation};
+  }
+  return measured;
+}
+
+Matrix6d carriedCovariance(const Matrix6d& covariance, const Pose& a_T_b) {
+  const Eigen::Matrix3d b_R_a = a_T_b.rotation.conjugate().toRotationMatrix();
+  Matrix6d carried = Matrix6d::Zero();
+  carried.topLeftCorner<3, 3>() = b_R_a;
+  carried.topRightCorner<3, 3>() = -b_R_a * skew(a_T_b.translation);
+  carried.bottomRightCorner<3, 3>() = b_R_a;
+  return carried * covariance * carried.transpose();
+}
+
+Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot) {
+  const Pose body_T_camera = cameraOnBody(robot);
+  return body_T_camera * scaled(world_T_camera, robot.scale) * body_T_camera.inverse();
+}
+
+Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& robot) {
+  if (!isKnown(covariance_camera)) return unknown_variance * Matrix6d::Identity();
+  Matrix6d covariance = covariance_camera;
+  covariance.topRows<3>() *= robot.scale.metres_per_unit;
+  covariance.leftCols<3>() *= robot.scale.metres_per_unit;
+  return carriedCovariance(covariance, cameraOnBody(robot).inverse());
+}
+
+std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredPose& now, const RobotSetup& robot) {
+  const double seconds = 1e-9 * static_cast<double>(now.time_ns - before.time_ns);
+  if (!(seconds > 0 && seconds <= longest_motion_s)) return std::nullopt;
+  const Pose body_T_camera = cameraOnBody(robot);
+  BodyMotion motion;
+  motion.from_ns = before.time_ns;
+  motion.seconds = seconds;
+  motion.before_T_now = body_T_camera * scaled(motionOfCamera(before, now), robot.scale) * body_T_camera.inverse();
+  if (isKnown(before.covariance_camera) && isKnown(now.covariance_camera)) {
+    motion.covariance = carriedCovariance(bodyCovariance(before.covariance_camera, robot), motion.before_T_now) +
+                        bodyCovariance(now.covariance_camera, robot);
+  } else {
+    motion.covariance = unknown_variance * Matrix6d::Identity();
+  }
+  return motion;
+}
+
+}  // namespace edgeslam

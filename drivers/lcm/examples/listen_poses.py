@@ -1,0 +1,20 @@
+#!/usr/bin/env python3
+"""Prints SLAM_POSE. Needs the types that `lcm-gen --python` writes, on PYTHONPATH, and nothing else."""
+import socket
+import struct
+from edgeslam import pose_t
+
+GROUP, PORT = "239.255.76.67", 7667
+receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+receiver.bind((GROUP, PORT))
+receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, struct.pack("4sL", socket.inet_aton(GROUP), socket.INADDR_ANY))
+print("ready", flush=True)
+while True:
+    packet = receiver.recv(65536)
+    if packet[:4] != b"LC02":  # a short message: magic, number, channel, a zero byte, the type's bytes
+        continue
+    channel, _, content = packet[8:].partition(b"\0")
+    if channel == b"SLAM_POSE":
+        pose = pose_t.decode(content)
+        print(f"{pose.utime / 1e6:.6f} s, position {pose.pos}, quaternion {pose.orientation}", flush=True)

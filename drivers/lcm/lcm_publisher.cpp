@@ -1,0 +1,93 @@
+#include "drivers/lcm/lcm_publisher.h"
+
+#include <chrono>
+
+#include "drivers/lcm/clocks.h"
+#include "drivers/lcm/messages.h"
+
+namespace edgeslam {
+namespace {
+
+// A whole map at once would push poses out of receivers' buffers, which hold some 150 packets by default, and would
+// fill a wireless link: these are 1.3 Mbit/s at 30 frames/s.
+constexpr int map_parts_at_once = 4;
+
+LcmOptions checked(LcmOptions options) {
+  checkChannels(options);
+  options.url = effectiveUrl(options);
+  return options;
+}
+
+}  // namespace
+
+LcmPublisher::LcmPublisher(const LcmOptions& options, const Pose& body_T_camera)
+    : options_(checked(options)), sender_(options_.url, options_.real_time_priority) {
+  robot_.body_T_camera = body_T_camera;
+  if (canReceive(options_.url)) {
+    receiver_ = std::make_unique<CommandReceiver>(options_.url, options_.command_channel);
+  }
+}
+
+void LcmPublisher::frame(const FrameResult& result) {
+  const PublishedFrame messages = frameMessages(result, robot_, before_, states_++, realUtime());
+  if (messages.pose) sender_.send(options_.pose_channel, *messages.pose);
+  sender_.send(options_.state_channel, messages.state);
+  sender_.send(options_.odometry_channel, messages.update);
+  if (result.state == TrackingState::initialising) before_.reset();  // the next pose is in another map
+  if (const std::optional<MeasuredPose> measured = measuredPose(result)) before_ = measured;
+  statistics_.add(result);
+  sendMapParts();
+  rejoinAfterComeback();
+}
+
+void LcmPublisher::status(const PublisherStatus& status) {
+  const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+  sender_.send(options_.status_channel, statusMessage(status, statistics_.take(now_ns), counts(), systemFigures(),
+                                                      statuses_++, monotonicUtime()));
+  sendMapParts();
+  rejoinAfterComeback();
+}
+
+void LcmPublisher::map(std::int64_t version, std::vector<PublishedPoint> points) {
+  map_ = finitePoints(std::move(points));
+  map_version_ = version;
+  map_utime_ = monotonicUtime();
+  next_part_ = 0;
+  parts_ = numberOfMapParts(map_.size());
+}
+
+std::optional<Command> LcmPublisher::nextCommand() {
+  while (receiver_) {
+    std::optional<CheckedCommand> checked_command = receiver_->next();
+    if (!checked_command) break;
+    if (checked_command->refusal) {
+      sender_.send(options_.answer_channel, *checked_command->refusal);
+      continue;
+    }
+    ++commands_;
+    return checked_command->command;
+  }
+  return std::nullopt;
+}
+
+void LcmPublisher::answer(const Command& command, bool accepted, const std::string& message) {
+  sender_.send(options_.answer_channel, commandAnswer(command, accepted, message, monotonicUtime()));
+}
+
+LcmCounts LcmPublisher::counts() const {
+  return {sender_.sent(), sender_.notSent(), commands_, receiver_ ? receiver_->ignored() : 0};
+}
+
+void LcmPublisher::sendMapParts() {
+  for (int i = 0; i < map_parts_at_once && next_part_ < parts_; ++i, ++next_part_) {
+    sender_.send(options_.map_channel, mapPart(map_, next_part_, map_version_, map_utime_, robot_.scale));
+  }
+}
+
+void LcmPublisher::rejoinAfterComeback() {
+  if (sender_.comebacks() == comebacks_) return;
+  comebacks_ = sender_.comebacks();
+  if (receiver_) receiver_->joinAnew();
+}
+
+}  // namespace edgeslam

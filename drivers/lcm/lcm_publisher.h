@@ -1,0 +1,67 @@
+// The poses' way out: frames, status and map as LCM messages, and the robot's commands. Nothing here waits for a
+// receiver or for the network: what cannot be sent, or not soon enough, is counted, and sending is tried anew.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/lcm/command_receiver.h"
+#include "drivers/lcm/lcm_options.h"
+#include "drivers/lcm/lcm_sender.h"
+#include "drivers/lcm/map_messages.h"
+#include "drivers/lcm/status_message.h"
+
+namespace edgeslam {
+
+// All functions are for one thread, the publishing one.
+class LcmPublisher {
+ public:
+  // `body_T_camera`: translation [m]. Throws InputError for options that cannot be. A network that is not there is no
+  // error: see problem().
+  LcmPublisher(const LcmOptions& options, const Pose& body_T_camera);
+
+  // From the next frame on.
+  void setScale(const ScaleState& scale) { robot_.scale = scale; }
+
+  // Each frame, in order: SLAM_STATE and SLAM_REL_ODOMETRY, and SLAM_POSE where the pose was measured; some of a
+  // waiting map's parts, too.
+  void frame(const FrameResult& result);
+
+  // Each second: SLAM_STATUS; rates and latencies are over the frames since the call before.
+  void status(const PublisherStatus& status);
+
+  // SLAM_MAP, its parts with the frames that follow. A map of which parts still wait is given up. Versions grow.
+  void map(std::int64_t version, std::vector<PublishedPoint> points);
+
+  // The oldest command that was not handed out yet. Those that make no sense are answered here.
+  std::optional<Command> nextCommand();
+  // To be called once for every command.
+  void answer(const Command& command, bool accepted, const std::string& message);
+
+  // As of now; messages that wait to be sent are not counted yet.
+  LcmCounts counts() const;
+  // Why messages do not go out at present, in one line with what to do; empty where they do.
+  std::string problem() const { return sender_.problem(); }
+  // True from when commands are heard.
+  bool listening() const { return receiver_ && receiver_->listening(); }
+
+ private:
+  void sendMapParts();
+  void rejoinAfterComeback();
+
+  LcmOptions options_;
+  RobotSetup robot_;
+  LcmSender sender_;
+  std::unique_ptr<CommandReceiver> receiver_;  // null where the URL cannot receive
+  std::optional<MeasuredPose> before_;
+  FrameStatistics statistics_;
+  std::int64_t states_ = 0, statuses_ = 0, commands_ = 0, comebacks_ = 0;
+
+  std::vector<PublishedPoint> map_;
+  std::int64_t map_version_ = 0, map_utime_ = 0;
+  int next_part_ = 0, parts_ = 0;
+};
+
+}  // namespace edgeslam

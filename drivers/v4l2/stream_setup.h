@@ -1,0 +1,28 @@
+// Settles format, size, region and frame rate with the driver.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "drivers/frame_capture/camera_options.h"
+#include "drivers/frame_capture/grey_conversion.h"
+#include "drivers/v4l2/capture_device.h"
+
+namespace edgeslam {
+
+struct StreamSetup {
+  BufferLayout layout;
+  double frame_rate = 0;  // [1/s]; 0 where the driver does not tell
+};
+
+struct SettledStream {
+  StreamSetup setup;
+  V4l2Problem problem;
+};
+
+// What the options leave open is chosen: the driver's present size; the frame rate fastest up to 30/s; of the formats
+// that give it the one with the least work (pixel_formats). A driver that gives anything else than was asked for is a
+// problem, whose text tells what it offers.
+SettledStream settleStream(const CaptureDevice& device, const CameraOptions& options);
+
+}  // namespace edgeslam

@@ -1,0 +1,75 @@
+// The service on the robot: camera to live run to LCM, until a signal ends it. Runs that are begun anew (reset, start
+// of a recording) follow each other in the same process, camera and LCM staying open.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/capture_link.h"
+#include "app/configuration.h"
+#include "app/daemon_signals.h"
+#include "app/event_log.h"
+#include "app/run_publisher.h"
+#include "drivers/frame_capture/reopening_camera.h"
+
+namespace edgeslam {
+
+struct DaemonSetup {
+  Configuration configuration;
+  Camera camera;
+  CameraOptions capture;      // the configuration's, or a recording as a stand-in
+  std::string record_folder;  // of a recording from the start; empty: none
+  std::optional<Map> map_in;  // gone on with
+  std::string map_out;        // empty: not written
+};
+
+class Daemon {
+ public:
+  // Tells what can go wrong, opens the camera (or waits for it later) and LCM. Throws InputError for what waiting does
+  // not heal.
+  Daemon(DaemonSetup setup, EventLog& log);
+
+  // Until SIGTERM, SIGINT or the end of a recording as a camera. Throws InputError where the map cannot be written at
+  // the end.
+  void run();
+
+ private:
+  // Why a run ended: the end of all, or a command that begins another one.
+  struct RunEnd {
+    std::optional<Command> command;
+    bool settles = false;  // the frames are at their end: mapping finishes
+  };
+
+  void tellStartProblems();
+  void tellProcessorProblems(const LiveRun& run);
+  void oneRun();
+  RunEnd capture(LiveRun& run);
+  void take(const Capture& capture, LiveRun& run);
+  void takeDamaged(const Capture& capture, LiveRun& run);
+  bool prepare(const Command& command);
+  void beginNext(const Command& command, LiveRun& run);
+  std::shared_ptr<FlightRecorder> recordTo(const std::string& folder);
+  void recordWhereConfigured();
+  std::string nextRecordingFolder() const;
+  void saveMapAtStart(const Map& map, const std::string& folder);
+  void endRecording();
+  void writeMap(const Map& map);
+
+  DaemonSignals signals_;  // first: threads inherit what is blocked
+  DaemonSetup setup_;
+  EventLog& log_;
+  CaptureLink link_;
+  std::unique_ptr<ReopeningCamera> camera_;
+  std::unique_ptr<RunPublisher> publisher_;
+  std::shared_ptr<FlightRecorder> recorder_;
+  std::shared_ptr<FlightRecorder> next_recorder_;  // of the run to come
+
+  RunStart start_ = RunStart::new_map;
+  std::optional<Map> map_;  // that the run to come goes on with
+  bool ended_ = false;
+  std::int64_t index_ = -1, time_ns_ = -1;  // of the last frame handed over
+  bool damage_told_ = false, processors_told_ = false;
+};
+
+}  // namespace edgeslam

@@ -1,0 +1,114 @@
+// What a live run gives out, as LCM messages: each frame, the status each second, the map; and the robot's commands.
+// The daemon and a replay at real time publish by the same one.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/background_work.h"
+#include "app/capture_link.h"
+#include "app/configuration.h"
+#include "app/event_log.h"
+#include "app/flight_recorder.h"
+#include "app/scale_from_distance.h"
+#include "app/service_notification.h"
+#include "drivers/lcm/lcm_publisher.h"
+#include "pipeline/live_run.h"
+
+namespace edgeslam {
+
+struct PublishingSetup {
+  LcmOptions lcm;
+  double map_interval_s = 5;  // SLAM_MAP at most so often where the map changed; 0: on request only
+  Pose body_T_camera;         // translation [m]
+  Camera camera;
+  ScaleOptions scale;
+  std::string map_file;      // empty: no command saves the map
+  bool begins_anew = false;  // capture carries out commands that begin another run: reset, start of a recording
+};
+
+// With all that the configuration says of it.
+PublishingSetup publishingSetup(const Configuration& configuration, const Camera& camera);
+
+enum class RunStart { new_map, saved_map, same_map };
+
+// All functions are for the run's publishing thread, begin() and end() for the one that starts and ends the run, while
+// there is no publishing thread.
+class RunPublisher {
+ public:
+  // Throws InputError where LCM's options cannot be.
+  RunPublisher(const PublishingSetup& setup, CaptureLink& link, EventLog& log);
+
+  // Before LiveRun::start(). `recorder` may be null. same_map: the scale stays.
+  void begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder, RunStart start);
+  // After LiveRun::stop(). Saves of the map that are under way are waited for; a last status has the run's totals.
+  void end();
+
+  // LiveObserver's.
+  LiveObserver observer();
+  void frame(const FrameResult& result, const std::string& problem);
+  void report(const MappingReport& report);
+  void tick();
+
+  // Since the start, over all runs; for the thread that starts and ends them.
+  PublisherStatus status() const;
+  // Of the service; for the thread that starts and ends runs, likewise.
+  ServiceNotification& service() { return service_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using MapPointer = std::shared_ptr<const Map>;
+  struct MapSaveWish {
+    std::optional<Command> command;  // none: a signal
+  };
+
+  // run_publisher.cpp: frames and status.
+  void forgetScale();
+  void eachSecond(Clock::time_point now);
+  void tellChanges(const PublisherStatus& status);
+  LiveCounts countsOverRuns() const;
+  bool isRecording() const;
+
+  // run_publisher_commands.cpp: commands and map.
+  void carryOut(const Command& command);
+  void setScale(const Command& command);
+  void askToSaveMap(const MapSaveWish& wish);
+  void stopRecording(const Command& command);
+  void passToCapture(const Command& command);
+  void publishChangedMap(Clock::time_point now);
+  void mapCame(const MapPointer& map);
+  void saveMapInBackground(const MapPointer& map);
+  void answerSaves(const std::vector<MapSaveWish>& wishes, bool saved, const std::string& message);
+
+  PublishingSetup setup_;
+  CaptureLink& link_;
+  EventLog& log_;
+  ServiceNotification service_;
+  LcmPublisher publisher_;
+  PositionHistory history_;
+  BackgroundWork work_;
+  LiveRun* run_ = nullptr;
+  std::shared_ptr<FlightRecorder> recorder_;
+  ScaleKind scale_ = ScaleKind::unknown;
+
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point next_second_ = start_;
+  LiveCounts earlier_runs_;
+  std::int64_t unreadable_ = 0, waits_ = 0;
+  int recoveries_ = 0, relocalisations_ = 0, loops_ = 0;
+  TrackingState state_ = TrackingState::initialising;
+  std::string reason_;
+
+  // What the log was told last.
+  std::string told_state_, told_lcm_problem_;
+  bool told_recording_ = false;
+
+  bool map_wanted_ = false;  // for SLAM_MAP
+  std::vector<MapSaveWish> save_wishes_;
+  Clock::time_point next_map_{};
+  std::int64_t published_changes_ = 0, map_version_ = 0;
+};
+
+}  // namespace edgeslam

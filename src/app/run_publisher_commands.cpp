@@ -1,0 +1,132 @@
+// The robot's commands, and the map as messages and file.
+#include <utility>
+
+#include "app/run_publisher.h"
+#include "dataset/saved_map.h"
+#include "pipeline/map_records.h"
+
+namespace edgeslam {
+namespace {
+
+std::vector<PublishedPoint> publishedPoints(const Map& map, const Camera& camera) {
+  std::vector<PublishedPoint> points;
+  for (const MapPointRecord& record : mapPointRecords(map, camera)) {
+    points.push_back({record.id, record.position.cast<float>(), record.edge_direction.cast<float>()});
+  }
+  return points;
+}
+
+// Whether it was saved, and in words.
+std::pair<bool, std::string> save(const Map& map, const Camera& camera, const std::string& path) {
+  try {
+    saveMap(path, camera, map);
+  } catch (const std::exception& error) {
+    return {false, std::string("the map is not saved: ") + error.what()};
+  }
+  return {true, "map of " + std::to_string(map.keyframes.size()) + " keyframes and " +
+                    std::to_string(map.points.size()) + " points saved to " + path};
+}
+
+}  // namespace
+
+void RunPublisher::carryOut(const Command& command) {
+  switch (command.kind) {
+    case CommandKind::reset:
+      return passToCapture(command);
+    case CommandKind::save_map:
+      return askToSaveMap({command});
+    case CommandKind::start_recording:
+      if (!isRecording()) return passToCapture(command);
+      return publisher_.answer(command, false, recorder_->status().message + " already");
+    case CommandKind::stop_recording:
+      return stopRecording(command);
+    case CommandKind::set_scale:
+      return setScale(command);
+    case CommandKind::send_map:
+      map_wanted_ = true;
+      run_->askForMap();
+      return publisher_.answer(command, true, "the map follows");
+  }
+}
+
+void RunPublisher::passToCapture(const Command& command) {
+  if (!setup_.begins_anew) {
+    publisher_.answer(command, false, "a replay does not begin anew");
+  } else if (!link_.request(command)) {
+    publisher_.answer(command, false, "another command is still being carried out; send it again");
+  }
+}
+
+void RunPublisher::setScale(const Command& command) {
+  const ScaleResult result =
+      scaleFromDistance(history_, command.from_utime, command.to_utime, command.distance_m, setup_.scale);
+  if (!result.problem.empty()) return publisher_.answer(command, false, result.problem);
+  scale_ = result.scale.kind;
+  publisher_.setScale(result.scale);
+  char text[120];
+  std::snprintf(text, sizeof(text), "the scale is %.6g metres a map unit, standard deviation %.2g %%",
+                result.scale.metres_per_unit, 100 * result.scale.sigma);
+  log_.tell(text);
+  publisher_.answer(command, true, text);
+}
+
+void RunPublisher::stopRecording(const Command& command) {
+  if (!isRecording()) return publisher_.answer(command, false, "there is no recording");
+  told_recording_ = false;  // it is told here
+  work_.begin([this, command, recorder = recorder_]() -> BackgroundWork::Completion {
+    const std::string message = recorder->stop().message;
+    return [this, command, message] {
+      log_.tell(message);
+      publisher_.answer(command, true, message);
+    };
+  });
+}
+
+void RunPublisher::askToSaveMap(const MapSaveWish& wish) {
+  if (setup_.map_file.empty()) {
+    return answerSaves({wish}, false, "no file is configured for the map (map.file)");
+  }
+  save_wishes_.push_back(wish);
+  run_->askForMap();
+}
+
+void RunPublisher::publishChangedMap(Clock::time_point now) {
+  const LiveCounts counts = run_->counts();
+  if (setup_.map_interval_s <= 0 || now < next_map_ || counts.points == 0 || counts.map_changes == published_changes_) {
+    return;
+  }
+  next_map_ = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(setup_.map_interval_s));
+  published_changes_ = counts.map_changes;
+  map_wanted_ = true;
+  run_->askForMap();
+}
+
+void RunPublisher::mapCame(const MapPointer& map) {
+  if (std::exchange(map_wanted_, false)) {
+    work_.begin([this, map, version = ++map_version_]() -> BackgroundWork::Completion {
+      return [this, version, points = publishedPoints(*map, setup_.camera)]() mutable {
+        publisher_.map(version, std::move(points));
+      };
+    });
+  }
+  if (!save_wishes_.empty()) saveMapInBackground(map);
+}
+
+void RunPublisher::saveMapInBackground(const MapPointer& map) {
+  const std::vector<MapSaveWish> wishes = std::exchange(save_wishes_, {});
+  // What was saved before is worth more.
+  if (map->points.empty()) return answerSaves(wishes, false, "there is no map yet");
+  work_.begin([this, map, wishes]() -> BackgroundWork::Completion {
+    const auto [saved, message] = save(*map, setup_.camera, setup_.map_file);
+    return [this, wishes, saved = saved, message = message] { answerSaves(wishes, saved, message); };
+  });
+}
+
+void RunPublisher::answerSaves(const std::vector<MapSaveWish>& wishes, bool saved, const std::string& message) {
+  if (!wishes.empty()) log_.tell(message);
+  for (const MapSaveWish& wish : wishes) {
+    if (wish.command) publisher_.answer(*wish.command, saved, message);
+  }
+}
+
+}  // namespace edgeslam

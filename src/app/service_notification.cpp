@@ -1,0 +1,41 @@
+#include "app/service_notification.h"
+
+#include <systemd/sd-daemon.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace edgeslam {
+namespace {
+
+void tell(const std::string& state) { sd_notify(/*unset_environment=*/0, state.c_str()); }
+
+}  // namespace
+
+ServiceNotification::ServiceNotification() {
+  std::uint64_t watchdog_us = 0;
+  if (sd_watchdog_enabled(/*unset_environment=*/0, &watchdog_us) > 0) {
+    feeding_interval_ = std::chrono::microseconds(std::max<std::uint64_t>(watchdog_us / 4, 1));
+  }
+}
+
+void ServiceNotification::ready() { tell("READY=1"); }
+
+void ServiceNotification::stopping() { tell("STOPPING=1"); }
+
+void ServiceNotification::status(const std::string& text) {
+  if (text == status_) return;
+  status_ = text;
+  std::string line = text;
+  std::replace(line.begin(), line.end(), '\n', ' ');  // a line of its own would be another message
+  tell("STATUS=" + line);
+}
+
+void ServiceNotification::alive(Clock::time_point now) {
+  const bool due = fed_ == Clock::time_point() || now - fed_ >= feeding_interval_;
+  if (feeding_interval_ == Clock::duration::zero() || !due) return;
+  fed_ = now;
+  tell("WATCHDOG=1");
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,80 @@
+#include "app/configuration_service.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/dataset/temporary_folder.h"
+
+namespace edgeslam {
+namespace {
+
+Configuration read(const std::string& text) {
+  const TemporaryFolder folder;
+  return readConfiguration(folder.write("file.yaml", text));
+}
+
+void expectRefused(const std::string& text, const std::string& line, const std::string& part) {
+  expectInputError([&] { read(text); }, "file.yaml:" + line + ": ", part);
+}
+
+const char* const whole =
+    "lcm:\n"
+    "  url: udpm://239.1.2.3:7000\n"
+    "  ttl: 1\n"
+    "  pose_channel: HEAD_POSE\n"
+    "  map_interval_s: 2.5\n"
+    "map:\n"
+    "  file: /var/lib/edgeslam/robot map\n"
+    "  go_on: true\n"
+    "recording:\n"
+    "  folder: recordings\n"
+    "  from_start: true\n"
+    "  most_megabytes: 100\n"
+    "  kept_free_megabytes: 50\n"
+    "scale:\n"
+    "  largest_sigma: 0.2\n"
+    "  metres_per_unit: 1.5\n"
+    "  sigma: 0.01\n";
+
+TEST(ConfigurationService, ReadsEveryKey) {
+  const ServiceOptions service = read(whole).service;
+  EXPECT_EQ(service.lcm.url, "udpm://239.1.2.3:7000");
+  EXPECT_EQ(service.lcm.time_to_live, 1);
+  EXPECT_EQ(service.lcm.pose_channel, "HEAD_POSE");
+  EXPECT_EQ(service.lcm.state_channel, "SLAM_STATE");
+  EXPECT_EQ(service.map_interval_s, 2.5);
+  EXPECT_EQ(service.map_file, "/var/lib/edgeslam/robot map");
+  EXPECT_TRUE(service.goes_on_with_map);
+  EXPECT_EQ(service.recordings_folder, "recordings");
+  EXPECT_TRUE(service.records_from_start);
+  EXPECT_EQ(read(whole).settings.recording.most_megabytes, 100);
+  EXPECT_EQ(read(whole).settings.recording.kept_free_megabytes, 50);
+  EXPECT_EQ(service.scale.largest_sigma, 0.2);
+  EXPECT_EQ(service.scale.metres_per_unit, 1.5);
+  EXPECT_EQ(service.scale.sigma, 0.01);
+}
+
+TEST(ConfigurationService, WhatIsWrittenReadsBackAsTheSame) {
+  const std::string text = formatConfiguration(read(whole));
+  EXPECT_EQ(formatConfiguration(read(text)), text);
+  EXPECT_EQ(formatServiceSections(read(whole)), formatServiceSections(read(text)));
+  EXPECT_EQ(formatServiceSections(Configuration()), "");
+  for (const std::string& key : serviceKeys()) {
+    EXPECT_NE(serviceSectionsDocumentation().find(" " + key.substr(key.find('.') + 1) + ":"), std::string::npos) << key;
+  }
+}
+
+TEST(ConfigurationService, WhatIsWrongIsToldByLineAndKey) {
+  expectRefused("map:\n  go_no: true\n", "2", "map.go_no is not a key; did you mean map.go_on?");
+  expectRefused("map:\n  go_on: maybe\n", "2", "map.go_on");
+  expectRefused("map:\n  file: [a]\n", "2", "map.file: a text is expected");
+  expectRefused("map:\n  file: ''\n", "2", "map.file: a text is expected");
+  expectRefused("recording:\n  most_megabytes: 0\n", "2", "recording.most_megabytes: 0 is out of range");
+  expectRefused("scale:\n  metres_per_unit: nan\n", "2", "scale.metres_per_unit");
+  expectRefused("lcm:\n  ttl: 256\n", "2", "lcm.ttl: 256 is out of range");
+  expectRefused("lcm:\n  url: nonsense\n", "2", "lcm: ");
+  expectRefused("lcm:\n  pose_channel: SLAM_STATE\n", "2", "lcm: ");
+  expectRefused("lcm: 5\n", "1", "lcm: a mapping of keys is expected");
+}
+
+}  // namespace
+}  // namespace edgeslam
