@@ -19,8 +19,8 @@ constexpr auto drain_time = std::chrono::seconds(1);
 constexpr auto idle_time = std::chrono::milliseconds(10);
 constexpr int nice_level = 10;
 
-// On Linux a thread has a nice level of its own. Lowering the priority needs no privilege, nor does leaving the real-time
-// scheduling that the thread which starts this one may have.
+// On Linux a thread has a nice level of its own. Lowering the priority needs no privilege, nor does leaving the
+// real-time scheduling that the thread which starts this one may have.
 void lowerPriority() {
   const sched_param usual{};
   pthread_setschedparam(pthread_self(), SCHED_OTHER, &usual);
