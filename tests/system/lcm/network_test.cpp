@@ -81,7 +81,7 @@ TEST_F(LcmNetwork, ARecordingOfTheLoggerPlaysBack) {
     }));
     const std::size_t before = fileContent(log).size();
     constexpr std::size_t least_bytes_a_frame = 1000;
-    publishHeard(publisher, 200, [&](int heard) {
+    publishHeard(publisher, 230, [&](int heard) {
       return fileContent(log).size() > before + static_cast<std::size_t>(heard - 5) * least_bytes_a_frame;
     });
     logger.end(SIGINT);
