@@ -172,6 +172,11 @@ function drawFigures() {
     ['Coverage from the first pose on', percent(summary.coverage_from_first_pose)], ['First pose after', inSeconds(summary.first_pose_s)],
     ['First live pose after', inSeconds(summary.first_live_pose_s)], ['Keyframes', whole(summary.keyframes)], ['Map points', whole(summary.map_points)],
     ['Length of the recording', inSeconds(summary.recording_s)], ['Time of the run', inSeconds(summary.wall_s)], ['Times real time', formatNumber(summary.real_time_ratio)]];
+  if (summary.latency_ms) {
+    rows.push(['Frames dropped, newer ones being there', whole(summary.frames.dropped)],
+      ['Latency from frame to pose (median; 99 %; largest)', [summary.latency_ms.p50, summary.latency_ms.p99, summary.latency_ms.max].map((value) => value.toFixed(1)).join('; ') + ' ms'],
+      ['Results before the next frame was due', percent(summary.share_within_frame_interval)]);
+  }
   if (summary.absolute_trajectory_error) {
     for (const [name, label] of [['trajectory', 'trajectory.txt'], ['live', 'trajectory_live.txt'], ['keyframes', 'keyframes.txt']]) {
       const error = ofError(name);
