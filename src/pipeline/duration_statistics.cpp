@@ -1,6 +1,7 @@
 #include "pipeline/duration_statistics.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace edgeslam {
@@ -9,6 +10,11 @@ namespace {
 constexpr double shortest_ns = 1000;  // what is shorter counts in the first bucket
 
 }  // namespace
+
+std::int64_t steadyNow_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
 
 std::size_t DurationStatistics::bucketOf(std::int64_t duration_ns) {
   const double ratio = static_cast<double>(duration_ns) / shortest_ns;

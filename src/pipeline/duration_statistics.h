@@ -9,6 +9,8 @@
 
 namespace edgeslam {
 
+std::int64_t steadyNow_ns();
+
 struct DurationSummary {
   std::string name;
   std::int64_t count = 0;
@@ -31,6 +33,19 @@ class DurationStatistics {
 
   std::array<std::atomic<std::uint32_t>, buckets> counts_{};
   std::atomic<std::int64_t> sum_ns_{0}, max_ns_{0};
+};
+
+// Adds the time from its making to its end.
+class Measured {
+ public:
+  explicit Measured(DurationStatistics& statistics) : statistics_(statistics), start_ns_(steadyNow_ns()) {}
+  ~Measured() { statistics_.add(steadyNow_ns() - start_ns_); }
+  Measured(const Measured&) = delete;
+  Measured& operator=(const Measured&) = delete;
+
+ private:
+  DurationStatistics& statistics_;
+  std::int64_t start_ns_;
 };
 
 }  // namespace edgeslam

@@ -10,7 +10,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::size_t scratch_size = std::size_t{8} << 20;  // twice what frames of 640 x 480 were seen to need
+constexpr std::size_t scratch_size = std::size_t{8} << 20;  // a frame that needs more allocates it
 constexpr int images_at_start = 8;
 constexpr int edge_maps = 5;  // the current, the last, the lost and the kept frame's, and one that mapping looks at
 constexpr std::size_t most_found_again = 4096;
