@@ -2,16 +2,12 @@
 #include "app/run_publisher.h"
 
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstdlib>
+#include <algorithm>
 #include <functional>
 #include <sstream>
 
-#include "unit/dataset/temporary_folder.h"
+#include "unit/app/service_manager.h"
 #include "unit/lcm/made_frames.h"
 
 namespace edgeslam {
@@ -29,15 +25,7 @@ Camera smallCamera() {
 
 class RunPublisherTest : public testing::Test {
  protected:
-  RunPublisherTest() : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0)) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    const std::string path = folder_.path("notify");
-    path.copy(address.sun_path, sizeof(address.sun_path) - 1);
-    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
-    setenv("NOTIFY_SOCKET", path.c_str(), 1);
-    setenv("WATCHDOG_USEC", "2000000", 1);
-    unsetenv("WATCHDOG_PID");
+  RunPublisherTest() {
     PublishingSetup setup;
     setup.lcm.url = "memq://";
     setup.camera = smallCamera();
@@ -45,23 +33,12 @@ class RunPublisherTest : public testing::Test {
     publisher_ = std::make_unique<RunPublisher>(setup, link_, log_);
     publisher_->begin(*run_, nullptr, RunStart::new_map);
   }
-  ~RunPublisherTest() override {
-    unsetenv("NOTIFY_SOCKET");
-    unsetenv("WATCHDOG_USEC");
-    close(socket_);
-  }
-
   bool isFed() const {
-    bool fed = false;
-    std::array<char, 4096> buffer{};
-    for (ssize_t bytes = 0; (bytes = recv(socket_, buffer.data(), buffer.size(), 0)) >= 0;) {
-      fed = fed || std::string(buffer.data(), static_cast<std::size_t>(bytes)) == "WATCHDOG=1";
-    }
-    return fed;
+    const std::vector<std::string> told = manager_.told();
+    return std::count(told.begin(), told.end(), "WATCHDOG=1") > 0;
   }
 
-  TemporaryFolder folder_;
-  int socket_;
+  ServiceManager manager_;
   std::ostringstream said_;
   EventLog log_{said_};
   CaptureLink link_;
