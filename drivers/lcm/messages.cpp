@@ -82,7 +82,7 @@ pose_t poseMessage(const state_t& state) {
 std::int8_t updateStatus(TrackingState state, bool has_motion) {
   if (has_motion) return update_t::ESTIMATE_VALID;
   const bool without_pose = state == TrackingState::lost || state == TrackingState::predicted;
-  return without_pose ? update_t::INSUFFICIENT_FEATURES : update_t::NO_DATA;
+  return without_pose ? update_t::ESTIMATE_INSUFFICIENT_FEATURES : update_t::NO_DATA;
 }
 
 update_t updateMessage(const FrameResult& result, const std::optional<BodyMotion>& motion) {
@@ -92,7 +92,7 @@ update_t updateMessage(const FrameResult& result, const std::optional<BodyMotion
   put(motion ? motion->before_T_now.translation : Eigen::Vector3d::Zero(), update.translation);
   put(motion ? motion->before_T_now.rotation : Eigen::Quaterniond::Identity(), update.rotation);
   put(motion ? motion->covariance : Matrix6d(unknown_variance * Matrix6d::Identity()), update.covariance);
-  update.estimate_status = static_cast<std::uint8_t>(updateStatus(result.state, motion.has_value()));
+  update.estimate_status = updateStatus(result.state, motion.has_value());
   return update;
 }
 

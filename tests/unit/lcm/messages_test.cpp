@@ -164,7 +164,7 @@ TEST(Messages, AFrameWithoutAPoseSendsNoneAndSaysWhy) {
     EXPECT_EQ(messages.state.reason, "too few points");
     EXPECT_EQ(messages.state.state, stateNumber(state));
     EXPECT_EQ(messages.update.estimate_status,
-              state == TrackingState::lost ? update_t::INSUFFICIENT_FEATURES : update_t::NO_DATA);
+              state == TrackingState::lost ? update_t::ESTIMATE_INSUFFICIENT_FEATURES : update_t::NO_DATA);
     EXPECT_EQ(messages.update.timestamp, messages.update.prev_timestamp);
     EXPECT_EQ(messages.state.covariance[0][0], unknown_variance);
     expectFinite(messages);
@@ -178,7 +178,7 @@ TEST(Messages, AGuessedPoseIsToldButNotPublishedAsMeasured) {
   EXPECT_FALSE(messages.pose);
   EXPECT_TRUE(messages.state.has_pose);
   EXPECT_EQ(messages.state.state, state_t::PREDICTED);
-  EXPECT_EQ(messages.update.estimate_status, update_t::INSUFFICIENT_FEATURES);
+  EXPECT_EQ(messages.update.estimate_status, update_t::ESTIMATE_INSUFFICIENT_FEATURES);
 }
 
 TEST(Messages, TheFirstPoseAfterALongLossHasNoMotion) {
