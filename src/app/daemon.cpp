@@ -85,7 +85,7 @@ void Daemon::oneRun() {
   if (!end.command) publisher_->service().stopping();
   run.stop(end.settles);
   publisher_->end();
-  endRecording();
+  recorder_.reset();
   if (end.command) return beginNext(*end.command, run);
   ended_ = true;
   if (!setup_.map_out.empty()) writeMap(run.mapper().initialised() ? run.mapper().map() : Map());
@@ -224,14 +224,6 @@ void Daemon::saveMapAtStart(const Map& map, const std::string& folder) {
   } catch (const std::exception& error) {
     log_.tell(std::string("the recording will not repeat the run, its map is not with it: ") + error.what());
   }
-}
-
-void Daemon::endRecording() {
-  if (!recorder_) return;
-  const bool was_recording = recorder_->status().recording;
-  const RecordingStatus status = recorder_->stop();
-  if (was_recording) log_.tell(status.message);
-  recorder_.reset();
 }
 
 void Daemon::writeMap(const Map& map) {

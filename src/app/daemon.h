@@ -53,7 +53,6 @@ class Daemon {
   void recordWhereConfigured();
   std::string nextRecordingFolder() const;
   void saveMapAtStart(const Map& map, const std::string& folder);
-  void endRecording();
   void writeMap(const Map& map);
 
   DaemonSignals signals_;  // first: threads inherit what is blocked

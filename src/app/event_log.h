@@ -6,9 +6,11 @@
 #include <ostream>
 #include <string>
 
+#include "app/outside_thread.h"
+
 namespace edgeslam {
 
-// For all threads.
+// For all threads; never waits for whoever reads. `stream` outlives the program's end (std::cerr does).
 class EventLog {
  public:
   using Clock = std::chrono::steady_clock;
@@ -19,6 +21,9 @@ class EventLog {
   void tell(const std::string& line) { tell(line, Clock::now()); }
   void tell(const std::string& line, Clock::time_point now);
 
+  // Whether all that was told is out within `OutsideThread::patience`.
+  bool waitUntilOut() { return outside_.waitUntilTaken(); }
+
   static constexpr int most_lines = 20;
   static constexpr int window_s = 10;
 
@@ -27,6 +32,7 @@ class EventLog {
   std::ostream& stream_;
   Clock::time_point window_start_{};
   int lines_ = 0, left_out_ = 0;  // in this window
+  OutsideThread outside_;
 };
 
 }  // namespace edgeslam

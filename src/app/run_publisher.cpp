@@ -53,7 +53,10 @@ void RunPublisher::end() {
   work_.finish();
   work_.complete();
   answerSaves(std::exchange(save_wishes_, {}), false, "the run ended before the map could be saved");
-  publisher_.status(status());
+  if (recorder_) recorder_->stop();
+  const PublisherStatus last = status();
+  publisher_.status(last);
+  tellChanges(last);
   map_wanted_ = false;
   earlier_runs_ = countsOverRuns();
   run_ = nullptr;

@@ -43,7 +43,8 @@ class RunPublisher {
 
   // Before LiveRun::start(). `recorder` may be null. same_map: the scale stays.
   void begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder, RunStart start);
-  // After LiveRun::stop(). Saves of the map that are under way are waited for; a last status has the run's totals.
+  // After LiveRun::stop(). Ends the recording; saves of the map that are under way are waited for; a last status has
+  // the run's totals.
   void end();
 
   // LiveObserver's.

@@ -6,17 +6,17 @@
 #include <cstdint>
 
 namespace edgeslam {
-namespace {
-
-void tell(const std::string& state) { sd_notify(/*unset_environment=*/0, state.c_str()); }
-
-}  // namespace
 
 ServiceNotification::ServiceNotification() {
   std::uint64_t watchdog_us = 0;
   if (sd_watchdog_enabled(/*unset_environment=*/0, &watchdog_us) > 0) {
     feeding_interval_ = std::chrono::microseconds(std::max<std::uint64_t>(watchdog_us / 4, 1));
   }
+}
+
+// A manager that takes nothing loses it: the next one says more.
+void ServiceNotification::tell(const std::string& state) {
+  outside_.hand([state] { sd_notify(/*unset_environment=*/0, state.c_str()); });
 }
 
 void ServiceNotification::ready() { tell("READY=1"); }

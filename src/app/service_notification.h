@@ -4,9 +4,11 @@
 #include <chrono>
 #include <string>
 
+#include "app/outside_thread.h"
+
 namespace edgeslam {
 
-// Outside a service all of it does nothing. For one thread.
+// Outside a service all of it does nothing. For one thread; never waits for the manager.
 class ServiceNotification {
  public:
   using Clock = std::chrono::steady_clock;
@@ -25,10 +27,16 @@ class ServiceNotification {
   // Sent at most four times in the watchdog's time.
   void alive(Clock::time_point now);
 
+  // Whether the manager has taken all of it within `OutsideThread::patience`.
+  bool waitUntilTold() { return outside_.waitUntilTaken(); }
+
  private:
+  void tell(const std::string& state);
+
   Clock::duration feeding_interval_ = Clock::duration::zero();  // 0: there is no watchdog
   Clock::time_point fed_{};
   std::string status_;
+  OutsideThread outside_;
 };
 
 }  // namespace edgeslam

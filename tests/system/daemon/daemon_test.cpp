@@ -76,6 +76,7 @@ TEST_F(DaemonTest, SignalsEndItAndWriteTheMap) {
   EXPECT_FALSE(loadMap(map, camera).points.empty());
   const std::string decisions = fileContent(folder_.path("recording/decisions.txt"));
   EXPECT_NE(decisions.find("\nend "), std::string::npos) << "the recording has its clean end";
+  ASSERT_TRUE(robot_->hears([](const Heard& heard) { return !heard.statuses.back().recording; }));
 }
 
 TEST_F(DaemonTest, ASavedMapIsGoneOnWithAndOneThatCannotBeIsSetAside) {

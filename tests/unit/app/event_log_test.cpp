@@ -18,6 +18,7 @@ TEST(EventLog, ALineAnEvent) {
   std::ostringstream stream;
   EventLog log(stream);
   log.tell("one\nand\rmore");
+  ASSERT_TRUE(log.waitUntilOut());
   EXPECT_EQ(stream.str(), "edgeslam: one and more\n");
 }
 
@@ -26,8 +27,10 @@ TEST(EventLog, AFloodIsCutAndCounted) {
   EventLog log(stream);
   const auto start = EventLog::Clock::now();
   for (int i = 0; i < 500; ++i) log.tell("noise", start + std::chrono::milliseconds(i));
+  ASSERT_TRUE(log.waitUntilOut());
   EXPECT_EQ(linesOf(stream.str()), EventLog::most_lines);
   log.tell("calm", start + seconds(EventLog::window_s));
+  ASSERT_TRUE(log.waitUntilOut());
   EXPECT_NE(stream.str().find("edgeslam: 480 lines were left out\nedgeslam: calm\n"), std::string::npos)
       << stream.str();
 }
@@ -42,6 +45,7 @@ TEST(EventLog, LinesOfManyThreadsAreWhole) {
     });
   }
   for (std::thread& thread : threads) thread.join();
+  ASSERT_TRUE(log.waitUntilOut());
   std::string expected;
   for (int i = 0; i < 16; ++i) expected += "edgeslam: 0123456789\n";
   EXPECT_EQ(stream.str(), expected);

@@ -33,7 +33,8 @@ class RunPublisherTest : public testing::Test {
     publisher_ = std::make_unique<RunPublisher>(setup, link_, log_);
     publisher_->begin(*run_, nullptr, RunStart::new_map);
   }
-  bool isFed() const {
+  bool isFed() {
+    EXPECT_TRUE(publisher_->service().waitUntilTold());
     const std::vector<std::string> told = manager_.told();
     return std::count(told.begin(), told.end(), "WATCHDOG=1") > 0;
   }
@@ -68,6 +69,7 @@ TEST_F(RunPublisherTest, ASignalForTheMapWithoutAFileIsToldOnce) {
   link_.askForMapToBeSaved();
   publisher_->tick();
   publisher_->tick();
+  ASSERT_TRUE(log_.waitUntilOut());
   EXPECT_EQ(said_.str(), "edgeslam: no file is configured for the map (map.file)\n");
 }
 

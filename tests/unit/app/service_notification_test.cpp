@@ -14,7 +14,10 @@ namespace {
 
 class ServiceNotifications : public testing::Test {
  protected:
-  std::vector<std::string> told() const { return manager_.told(); }
+  std::vector<std::string> toldBy(ServiceNotification& service) const {
+    EXPECT_TRUE(service.waitUntilTold());
+    return manager_.told();
+  }
 
  private:
   ServiceManager manager_;
@@ -25,10 +28,10 @@ constexpr auto kMillisecond = std::chrono::milliseconds(1);
 
 TEST_F(ServiceNotifications, StartAndEnd) {
   ServiceNotification service;
-  EXPECT_EQ(told(), Told{});
+  EXPECT_EQ(toldBy(service), Told{});
   service.ready();
   service.stopping();
-  EXPECT_EQ(told(), (Told{"READY=1", "STOPPING=1"}));
+  EXPECT_EQ(toldBy(service), (Told{"READY=1", "STOPPING=1"}));
 }
 
 TEST_F(ServiceNotifications, AStatusIsOneLineAndToldOnce) {
@@ -36,29 +39,29 @@ TEST_F(ServiceNotifications, AStatusIsOneLineAndToldOnce) {
   service.status("tracking");
   service.status("tracking");
   service.status("lost\nWATCHDOG=1");
-  EXPECT_EQ(told(), (Told{"STATUS=tracking", "STATUS=lost WATCHDOG=1"}));
+  EXPECT_EQ(toldBy(service), (Told{"STATUS=tracking", "STATUS=lost WATCHDOG=1"}));
 }
 
 TEST_F(ServiceNotifications, TheWatchdogIsFedFourTimesInItsTime) {
   ServiceNotification service;
   const ServiceNotification::Clock::time_point start(std::chrono::hours(1));
   for (int i = 0; i < 2000; ++i) service.alive(start + i * kMillisecond);
-  EXPECT_EQ(told(), Told(4, "WATCHDOG=1"));
-  EXPECT_EQ(told(), Told{}) << "no frames, no food";
+  EXPECT_EQ(toldBy(service), Told(4, "WATCHDOG=1"));
+  EXPECT_EQ(toldBy(service), Told{}) << "no frames, no food";
 }
 
 TEST_F(ServiceNotifications, WithoutAWatchdogNothingIsFed) {
   unsetenv("WATCHDOG_USEC");
   ServiceNotification service;
   for (int i = 0; i < 5; ++i) service.alive(ServiceNotification::Clock::time_point(std::chrono::hours(i)));
-  EXPECT_EQ(told(), Told{});
+  EXPECT_EQ(toldBy(service), Told{});
 }
 
 TEST_F(ServiceNotifications, AnotherProcessesWatchdogIsNotOurs) {
   setenv("WATCHDOG_PID", "1", 1);
   ServiceNotification service;
   service.alive(ServiceNotification::Clock::time_point(std::chrono::hours(1)));
-  EXPECT_EQ(told(), Told{});
+  EXPECT_EQ(toldBy(service), Told{});
   unsetenv("WATCHDOG_PID");
 }
 
@@ -68,7 +71,7 @@ TEST_F(ServiceNotifications, OutsideAServiceNothingHappens) {
   service.ready();
   service.status("tracking");
   service.alive(ServiceNotification::Clock::time_point(std::chrono::hours(1)));
-  EXPECT_EQ(told(), Told{});
+  EXPECT_EQ(toldBy(service), Told{});
 }
 
 }  // namespace

@@ -181,6 +181,9 @@ struct PublishedCase {
   int pairs;
 };
 
+// The test's name has it.
+void PrintTo(const PublishedCase& published, std::ostream* stream) { *stream << published.estimate; }
+
 class PublishedTrajectories : public testing::TestWithParam<PublishedCase> {};
 
 TEST_P(PublishedTrajectories, GiveThePublishedFigures) {
