@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -18,6 +19,7 @@ namespace edgeslam {
 namespace {
 
 constexpr std::size_t largest_file = 1 << 20;  // [bytes]
+constexpr char include_key[] = "include";
 
 struct Problem {
   int line = -1;  // from 0; negative where the problem has no line
@@ -58,6 +60,7 @@ class Reader {
       return tell(-1, "is a camera's calibration; a configuration names it by camera.calibration");
     }
     forEachKey(document, "", [this](const std::string& name, const YAML::Node& key, const YAML::Node& value) {
+      if (name == include_key) return;  // read before
       if (sections_.count(name) == 0) return tellUnknown(key.Mark().line, name);
       readSection(name, key.Mark().line, value);
     });
@@ -136,14 +139,55 @@ class Reader {
   std::set<std::string> sections_;
 };
 
-void readDocuments(const std::string& text, Configuration& configuration, std::vector<Problem>& problems) {
+std::string formatted(const Problem& problem, const std::string& path) {
+  const std::string line = problem.line < 0 ? "" : ":" + std::to_string(problem.line + 1);
+  return path + line + ": " + problem.text;
+}
+
+void readFile(const std::string& path, bool may_include, Configuration& configuration,
+              std::vector<std::string>& problems);
+
+// What is wrong with the key itself; of the file it names, to `problems`.
+std::optional<Problem> readIncluded(const YAML::Node& node, bool may_include, const std::string& path,
+                                    Configuration& configuration, std::vector<std::string>& problems) {
+  const int line = node.Mark().line;
+  if (!may_include) return Problem{line, "include: an included file includes no other"};
+  if (!node.IsScalar() || node.Scalar().empty()) return Problem{line, "include: the path of a file is expected"};
+  readFile((std::filesystem::path(path).parent_path() / node.Scalar()).string(), false, configuration, problems);
+  return std::nullopt;
+}
+
+void readDocuments(const std::string& path, bool may_include, Configuration& configuration, std::vector<Problem>& found,
+                   std::vector<std::string>& problems) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) problems.push_back({documents[1].Mark().line, "a second document; only one is expected"});
-    if (!documents.empty()) Reader(configuration, problems).readDocument(documents.front());
+    const std::vector<YAML::Node> documents = YAML::LoadAll(readText(path));
+    if (documents.size() > 1) found.push_back({documents[1].Mark().line, "a second document; only one is expected"});
+    if (documents.empty()) return;
+    const YAML::Node& document = documents.front();
+    if (document.IsMap() && document[include_key]) {
+      const auto wrong = readIncluded(document[include_key], may_include, path, configuration, problems);
+      if (wrong) found.push_back(*wrong);
+    }
+    configuration.source = path;
+    Reader(configuration, found).readDocument(document);
   } catch (const YAML::Exception& error) {
-    problems.push_back({error.mark.line, "is not YAML: " + error.msg});
+    found.push_back({error.mark.line, "is not YAML: " + error.msg});
   }
+}
+
+// Over what the configuration has already.
+void readFile(const std::string& path, bool may_include, Configuration& configuration,
+              std::vector<std::string>& problems) {
+  configuration.source = path;
+  std::vector<Problem> found;
+  try {
+    readDocuments(path, may_include, configuration, found, problems);
+  } catch (const InputError& error) {
+    problems.emplace_back(error.what());
+    return;
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Problem& a, const Problem& b) { return a.line < b.line; });
+  for (const Problem& problem : found) problems.push_back(formatted(problem, path));
 }
 
 void appendSettings(std::string& text, Settings settings, bool documented) {
@@ -167,19 +211,7 @@ void appendSettings(std::string& text, Settings settings, bool documented) {
 
 Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems) {
   Configuration configuration;
-  configuration.source = path;
-  std::vector<Problem> found;
-  try {
-    readDocuments(readText(path), configuration, found);
-  } catch (const InputError& error) {
-    problems.emplace_back(error.what());
-    return configuration;
-  }
-  std::stable_sort(found.begin(), found.end(), [](const Problem& a, const Problem& b) { return a.line < b.line; });
-  for (const Problem& problem : found) {
-    const std::string line = problem.line < 0 ? "" : ":" + std::to_string(problem.line + 1);
-    problems.push_back(path + line + ": " + problem.text);
-  }
+  readFile(path, true, configuration, problems);
   return configuration;
 }
 
@@ -215,7 +247,9 @@ std::string defaultConfigurationText() {
       "change.\n"
       "# `edgeslam check-config FILE` says what is wrong with a file, or what it changes. Lengths of the scene are in "
       "map units,\n"
-      "# a sigma is a standard deviation.\n\n";
+      "# a sigma is a standard deviation.\n\n"
+      "# Another configuration, relative to this file, to begin with; what this file says counts.\n"
+      "# include: profiles/low-power.yaml\n\n";
   text += cameraSectionDocumentation() + captureSectionDocumentation() + serviceSectionsDocumentation();
   appendSettings(text, Settings{}, true);
   return text;

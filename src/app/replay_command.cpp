@@ -20,6 +20,7 @@
 #include "dataset/evaluation.h"
 #include "dataset/frame_source.h"
 #include "dataset/recording_source.h"
+#include "dataset/report.h"
 #include "dataset/run_files.h"
 #include "dataset/saved_map.h"
 #include "pipeline/lockstep_run.h"
@@ -238,7 +239,11 @@ void tell(const RunResult& result, const std::optional<Trajectory>& ground_truth
       std::printf("no error figure: %s\n", problem.what());
     }
   }
-  std::printf("%s/report.html shows it all\n", output.c_str());
+  if (reportsAreBuiltIn()) {
+    std::printf("%s/report.html shows it all\n", output.c_str());
+  } else {
+    std::printf("results are in %s; this build makes no report.html\n", output.c_str());
+  }
 }
 
 // Told before a long run rather than after it.

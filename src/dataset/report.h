@@ -11,6 +11,9 @@
 
 namespace edgeslam {
 
+// False where reports were left out of the build (EDGESLAM_REPORTS=OFF): there is no page then.
+bool reportsAreBuiltIn();
+
 // The whole page. With a ground truth that the trajectory could be aligned to, all is shown in its frame, in its unit;
 // otherwise in the world frame (the first keyframe's camera), in map units. Long runs and large maps are thinned, and
 // the page says so.

@@ -106,13 +106,14 @@ void writeRunFiles(const std::string& folder, const RunResult& result, const Run
   const RunSummary summary = summarise(result, ground_truth);
   const std::string summary_text =
       summaryJson(summary, result, description).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  writeFileSet(folder, {{"trajectory.txt", formatTrajectory(finalTrajectory(result))},
-                        {"trajectory_live.txt", formatTrajectory(liveTrajectory(result))},
-                        {"frames.csv", formatFrameTable(result)},
-                        {"keyframes.txt", formatKeyframes(result)},
-                        {"map.ply", formatPly(result.map_points)},
-                        {"summary.json", summary_text},
-                        {"report.html", formatReport(result, summary, description, ground_truth)}});
+  std::vector<FileContent> files{{"trajectory.txt", formatTrajectory(finalTrajectory(result))},
+                                 {"trajectory_live.txt", formatTrajectory(liveTrajectory(result))},
+                                 {"frames.csv", formatFrameTable(result)},
+                                 {"keyframes.txt", formatKeyframes(result)},
+                                 {"map.ply", formatPly(result.map_points)},
+                                 {"summary.json", summary_text}};
+  if (reportsAreBuiltIn()) files.push_back({"report.html", formatReport(result, summary, description, ground_truth)});
+  writeFileSet(folder, files);
 }
 
 }  // namespace edgeslam

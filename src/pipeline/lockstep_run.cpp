@@ -40,8 +40,8 @@ const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns
   takeDueUpdate(index);
   messages_.clear();
   const bool mapping_busy = recorded_ && recorded_->mapping_busy.count(index) > 0;
-  FrameRecord& frame =
-      record_.add(tracking_.process(index, time_ns, grey, mapping_busy, messages_), /*unreadable=*/false);
+  latest_ = &tracking_.process(index, time_ns, grey, mapping_busy, messages_);
+  FrameRecord& frame = record_.add(*latest_, /*unreadable=*/false);
   const auto start = std::chrono::steady_clock::now();
   for (MappingMessage& message : messages_) hand(message);
   frame.times.add(Stage::mapping, millisecondsSince(start));
@@ -54,7 +54,8 @@ const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns
 const FrameRecord& LockstepRun::skip(std::int64_t index, std::int64_t time_ns, const std::string& problem) {
   takeDueUpdate(index);
   ++processed_;
-  return record_.add(tracking_.skip(index, time_ns, problem), /*unreadable=*/true);
+  latest_ = &tracking_.skip(index, time_ns, problem);
+  return record_.add(*latest_, /*unreadable=*/true);
 }
 
 // The newest of those due; what it knows includes what the others knew.

@@ -29,6 +29,10 @@ class LockstepRun {
   const FrameRecord& process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey);
   // A frame that could not be read.
   const FrameRecord& skip(std::int64_t index, std::int64_t time_ns, const std::string& problem);
+  // What the last frame came to, with its covariance; until the next one.
+  const FrameResult& latest() const { return *latest_; }
+  // Recoveries, relocalisations, loops so far: "frame 120: ...".
+  const std::vector<std::string>& events() const { return record_.events(); }
   // Lets mapping and places come to their end, after the last frame: map() is final then.
   void settle();
   // Final poses, carried by their keyframes, and the map. Call once, at the end; settles.
@@ -59,6 +63,7 @@ class LockstepRun {
   MappingWorker mapping_;
   PlacesWorker places_;
   RunRecord record_;
+  const FrameResult* latest_ = nullptr;
   FrameMessages messages_;  // of the current frame
   std::deque<DueUpdate> updates_;
   std::deque<DueSnapshot> snapshots_;

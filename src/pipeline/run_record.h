@@ -23,6 +23,8 @@ class RunRecord {
   FrameRecord& add(const FrameResult& frame, bool unreadable);
   void add(MappingReport report);
   void add(DrawnFrame drawing) { result_.drawings.push_back(std::move(drawing)); }
+  // Until finish().
+  const std::vector<std::string>& events() const { return result_.events; }
 
   // Final poses, carried by their keyframes, and the map. Call once, at the end.
   RunResult finish(const Mapper& mapper);

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <vector>
 
 #include "app/command_line.h"
+#include "app/configuration.h"
 #include "unit/dataset/temporary_folder.h"
 
 namespace edgeslam {
@@ -61,6 +64,35 @@ TEST(CheckConfig, AllCommittedFilesAreGood) {
     cameras += entry.path().parent_path().filename() == "cameras" ? 1 : 0;
   }
   EXPECT_GE(cameras, 5);
+}
+
+TEST(CheckConfig, ExamplesOfRobotsLookAheadAndSayWhatTheirCameraIs) {
+  int robots = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(EDGESLAM_SOURCE_DIR "/firmware_cfg/robots")) {
+    const Configuration robot = readConfiguration(entry.path().string());
+    ++robots;
+    ASSERT_TRUE(robot.camera) << entry.path();
+    EXPECT_EQ(robot.capture.width, robot.camera->width) << entry.path();
+    EXPECT_EQ(robot.capture.height, robot.camera->height) << entry.path();
+    const Eigen::Quaterniond& body_R_camera = robot.body_T_camera.rotation;
+    EXPECT_GT((body_R_camera * Eigen::Vector3d::UnitZ()).x(), 0.7) << "looks ahead: " << entry.path();
+    EXPECT_LE((body_R_camera * Eigen::Vector3d::UnitZ()).z(), 1e-9) << "and never up: " << entry.path();
+    EXPECT_LT((body_R_camera * Eigen::Vector3d::UnitX()).y(), -0.999) << "its right is the robot's: " << entry.path();
+  }
+  EXPECT_GE(robots, 3);
+}
+
+TEST(CheckConfig, NominalCalibrationsSayThatTheyAreNoMeasurements) {
+  int nominal = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(EDGESLAM_SOURCE_DIR "/firmware_cfg/cameras")) {
+    const std::string name = entry.path().filename();
+    if (name.rfind("raspberry", 0) != 0 && name.rfind("usb", 0) != 0) continue;
+    ++nominal;
+    std::ifstream file(entry.path());
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    EXPECT_NE(text.find("NOMINAL"), std::string::npos) << name;
+  }
+  EXPECT_GE(nominal, 7);
 }
 
 TEST(CheckConfig, PrintsTheDefaultsAsAFileThatIsGood) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -116,6 +117,39 @@ TEST(Configuration, EveryTruncationOfTheDefaultsIsReadOrRefused) {
     refused += problems.empty() ? 0 : 1;
   }
   EXPECT_GT(refused, 0);
+}
+
+TEST(Configuration, WhatItSaysItselfCountsOverWhatItIncludes) {
+  const TemporaryFolder folder;
+  folder.write("base.yaml", "points: {count: 300, spacing: 9}\ncamera: {calibration: camera.yaml}\n");
+  folder.write("camera.yaml", "width: 640\nheight: 480\nfx: 500\nfy: 500\ncx: 320\ncy: 240\n");
+  std::filesystem::create_directory(folder.path("robots"));
+  for (const char* text :
+       {"include: ../base.yaml\npoints: {count: 400}\n", "points: {count: 400}\ninclude: ../base.yaml\n"}) {
+    const Configuration read = readConfiguration(folder.write("robots/robot.yaml", text));
+    EXPECT_EQ(read.settings.tracking.points.count, 400) << text;
+    EXPECT_EQ(read.settings.tracking.points.spacing, 9);
+    ASSERT_TRUE(read.camera) << "named relative to the file that names it";
+    EXPECT_EQ(read.camera->fx, 500);
+    EXPECT_EQ(read.source, folder.path("robots/robot.yaml"));
+  }
+}
+
+TEST(Configuration, ProblemsOfAnIncludedFileAreToldWithItsName) {
+  const TemporaryFolder folder;
+  const std::string base = folder.write("base.yaml", "include: base.yaml\npoints:\n  cuont: 300\n");
+  const std::string robot = folder.write("robot.yaml", "include: base.yaml\npoints: {count: -1}\n");
+  std::vector<std::string> problems;
+  readConfiguration(robot, problems);
+  ASSERT_EQ(problems.size(), 3U);
+  EXPECT_EQ(problems[0], base + ":1: include: an included file includes no other");
+  EXPECT_EQ(problems[1], base + ":3: points.cuont is not a key; did you mean points.count?");
+  EXPECT_EQ(problems[2].rfind(robot + ":2: points.count", 0), 0U) << problems[2];
+
+  problems.clear();
+  readConfiguration(folder.write("lost.yaml", "include: nowhere.yaml\n"), problems);
+  EXPECT_EQ(problems, Lines{folder.path("nowhere.yaml") + ": cannot be opened"});
+  EXPECT_EQ(problemsOf("points: {}\ninclude: [a, b]\n"), Lines{"file.yaml:2: include: the path of a file is expected"});
 }
 
 TEST(Configuration, AMissingFileAndAFolderAreRefused) {

@@ -1,0 +1,71 @@
+// Frames, poses and map points, as they go into the library and come out of it.
+//
+// Frames of reference: the camera's is x right, y down, z forward; the world is the camera's at the map's first
+// keyframe. Lengths are in map units: one camera cannot know the scale. Rotations are unit quaternions (w, x, y, z).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace edgeslam {
+
+// An image of 8 bits a pixel, row by row from the top. It is looked at during the call only.
+struct GreyImage {
+  const std::uint8_t* pixels = nullptr;
+  int width = 0;   // [px], the calibration's
+  int height = 0;  // [px]
+  std::ptrdiff_t bytes_per_row = 0;
+};
+
+// Of the world T camera: takes coordinates in the camera frame to the world.
+struct CameraPose {
+  std::array<double, 3> position{0, 0, 0};        // of the camera, world [map units]
+  std::array<double, 4> orientation{1, 0, 0, 0};  // w, x, y, z
+};
+
+enum class SlamState {
+  initialising,  // no map yet
+  tracking,      // a measured pose
+  predicted,     // a pose from motion alone: not to be steered by
+  recovered,     // measured again after a loss
+  relocalised,   // likewise, found again in the whole map
+  lost           // no pose
+};
+
+struct PosedFrame {
+  std::int64_t index = 0;    // of the frame, from 0
+  std::int64_t time_ns = 0;  // as it was given with the frame
+  SlamState state = SlamState::initialising;
+  std::string reason;  // why it is not `tracking`; empty otherwise
+  bool has_pose = false;
+  CameraPose pose;
+  // Of a small motion [translation; rotation vector [rad]] of the camera in its own frame, row by row.
+  std::array<double, 36> covariance{};
+  int tracked_points = 0;  // points followed in the image
+  int mapped_points = 0;   // of these with depth, and used for the pose
+  double latency_ms = -1;  // from handing the frame over to its pose; negative: not known
+
+  // The pose was measured, not guessed.
+  bool isGood() const {
+    return state == SlamState::tracking || state == SlamState::recovered || state == SlamState::relocalised;
+  }
+};
+
+struct TimedCameraPose {
+  std::int64_t time_ns = 0;
+  CameraPose pose;
+};
+
+// A point on an image edge.
+struct MapEdgePoint {
+  std::int64_t id = 0;
+  std::array<float, 3> position{};        // world [map units]
+  std::array<float, 3> edge_direction{};  // world, unit; zero for a corner-like point
+  float depth_sigma_share = 0;            // standard deviation of its depth over the depth
+  std::uint8_t grey = 0;                  // of the image there
+};
+
+}  // namespace edgeslam

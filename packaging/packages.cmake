@@ -1,0 +1,61 @@
+# Debian packages:  cmake --build BUILD --target manual_pages && cpack -G DEB --config BUILD/CPackConfig.cmake
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME edgeslam)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_CONTACT "Edge SLAM maintainers <maintainers@users.noreply.h-seed-3b6aca39.example>")
+set(CPACK_PACKAGE_VENDOR "Edge SLAM")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+  WORLD_READ WORLD_EXECUTE)
+set(CPACK_COMPONENTS_ALL edgeslam libedgeslam0 libedgeslam-dev)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^arm")
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE armhf)
+endif()
+
+set(CPACK_COMPONENT_EDGESLAM_DESCRIPTION "monocular SLAM on image edges, as a service over LCM
+ Edge SLAM tells a robot with one camera where it is, at every frame, also in front
+ of bare walls: it follows points on image edges, builds a 3D map of them, and
+ publishes a pose with its uncertainty over LCM.
+ .
+ This package has the command, the service and its configuration.")
+set(CPACK_DEBIAN_EDGESLAM_PACKAGE_NAME edgeslam)
+set(CPACK_DEBIAN_EDGESLAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_EDGESLAM_PACKAGE_RECOMMENDS "libcamera-ipa")
+set(CPACK_DEBIAN_EDGESLAM_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers")
+set(CPACK_DEBIAN_EDGESLAM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/conffiles
+  ${CMAKE_SOURCE_DIR}/packaging/debian/postinst ${CMAKE_SOURCE_DIR}/packaging/debian/prerm
+  ${CMAKE_SOURCE_DIR}/packaging/debian/postrm)
+set(CPACK_DEBIAN_EDGESLAM_DEBUGINFO_PACKAGE ON)
+
+set(CPACK_COMPONENT_LIBEDGESLAM0_DESCRIPTION "monocular SLAM on image edges, shared library
+ Edge SLAM tells a robot with one camera where it is, at every frame, also in front
+ of bare walls: it follows points on image edges, builds a 3D map of them, and
+ gives a pose with its uncertainty.
+ .
+ This package has the library that programs use.")
+set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_NAME libedgeslam0)
+set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBEDGESLAM0_DEBUGINFO_PACKAGE ON)
+
+set(CPACK_COMPONENT_LIBEDGESLAM-DEV_DESCRIPTION "monocular SLAM on image edges, development files
+ Edge SLAM tells a robot with one camera where it is, at every frame, also in front
+ of bare walls: it follows points on image edges, builds a 3D map of them, and
+ gives a pose with its uncertainty.
+ .
+ This package has the headers and the CMake package to build programs with.")
+set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_NAME libedgeslam-dev)
+set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_DEPENDS "libedgeslam0 (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_SHLIBDEPS OFF)
+
+include(CPack)

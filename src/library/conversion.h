@@ -1,0 +1,29 @@
+// The method's values as the public ones, and frames from outside checked.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "app/configuration.h"
+#include "edgeslam/types.h"
+#include "map/map.h"
+#include "pipeline/frame_result.h"
+
+namespace edgeslam {
+
+// Throws InputError; `calibration_file` may be empty where the configuration has one.
+Configuration libraryConfiguration(const std::string& calibration_file, const std::string& configuration_file);
+
+// The image's pixels where they are. Throws InputError where it is no image of the camera's size, or not after
+// `last_time_ns`.
+cv::Mat checkedImage(const GreyImage& image, const Camera& camera, std::int64_t time_ns, std::int64_t last_time_ns);
+void requireLater(std::int64_t time_ns, std::int64_t last_time_ns);
+
+CameraPose publicPose(const Pose& world_T_camera);
+PosedFrame publicFrame(const FrameResult& result);
+std::vector<MapEdgePoint> publicMap(const Map& map, const Camera& camera);
+// Throws InputError where the map is empty or cannot be written.
+void saveLibraryMap(const std::string& path, const Camera& camera, const Map& map);
+
+}  // namespace edgeslam
