@@ -13,6 +13,7 @@
 #include "app/event_log.h"
 #include "app/flight_recorder.h"
 #include "app/scale_from_distance.h"
+#include "app/scale_search.h"
 #include "app/service_notification.h"
 #include "drivers/lcm/lcm_publisher.h"
 #include "pipeline/live_run.h"
@@ -65,7 +66,6 @@ class RunPublisher {
   };
 
   // run_publisher.cpp: frames and status.
-  void forgetScale();
   void eachSecond(Clock::time_point now);
   void tellChanges(const PublisherStatus& status);
   LiveCounts countsOverRuns() const;
@@ -73,7 +73,6 @@ class RunPublisher {
 
   // run_publisher_commands.cpp: commands and map.
   void carryOut(const Command& command);
-  void setScale(const Command& command);
   void askToSaveMap(const MapSaveWish& wish);
   void stopRecording(const Command& command);
   void passToCapture(const Command& command);
@@ -82,12 +81,23 @@ class RunPublisher {
   void saveMapInBackground(const MapPointer& map);
   void answerSaves(const std::vector<MapSaveWish>& wishes, bool saved, const std::string& message);
 
+  // run_publisher_scale.cpp.
+  void forgetScale();
+  void mapWasCorrected();
+  void setScale(const Command& command);
+  void takeOdometry();
+  void followScale(Clock::time_point now);
+  void lookForGround(const MapPointer& map);
+  std::string scaleProblem() const;
+  void tellScaleProblem(Clock::time_point now);
+
   PublishingSetup setup_;
   CaptureLink& link_;
   EventLog& log_;
   ServiceNotification service_;
   LcmPublisher publisher_;
   PositionHistory history_;
+  ScaleSearch search_;
   BackgroundWork work_;
   LiveRun* run_ = nullptr;
   std::shared_ptr<FlightRecorder> recorder_;
@@ -104,6 +114,12 @@ class RunPublisher {
   // What the log was told last.
   std::string told_state_, told_lcm_problem_;
   bool told_recording_ = false;
+
+  bool ground_wanted_ = false;          // of the map that was asked for
+  KeyframeId ground_keyframe_ = -1;     // the latest of the map in which it was looked for
+  std::int64_t ground_looks_void_ = 0;  // counts what makes looks under way worthless
+  std::string told_scale_problem_;      // without its numbers
+  Clock::time_point next_scale_problem_{};
 
   bool map_wanted_ = false;  // for SLAM_MAP
   std::vector<MapSaveWish> save_wishes_;
