@@ -1,6 +1,5 @@
 #include "app/run_publisher.h"
 
-#include <cstdio>
 #include <utility>
 
 namespace edgeslam {

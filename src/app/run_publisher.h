@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -89,7 +90,7 @@ class RunPublisher {
   void followScale(Clock::time_point now);
   void lookForGround(const MapPointer& map);
   std::string scaleProblem() const;
-  void tellScaleProblem(Clock::time_point now);
+  void tellScaleProblem();
 
   PublishingSetup setup_;
   CaptureLink& link_;
@@ -115,11 +116,10 @@ class RunPublisher {
   std::string told_state_, told_lcm_problem_;
   bool told_recording_ = false;
 
-  bool ground_wanted_ = false;          // of the map that was asked for
-  KeyframeId ground_keyframe_ = -1;     // the latest of the map in which it was looked for
-  std::int64_t ground_looks_void_ = 0;  // counts what makes looks under way worthless
-  std::string told_scale_problem_;      // without its numbers
-  Clock::time_point next_scale_problem_{};
+  bool ground_wanted_ = false;                 // of the map that was asked for
+  KeyframeId ground_keyframe_ = -1;            // the latest of the map in which it was looked for
+  std::int64_t ground_looks_void_ = 0;         // counts what makes looks under way worthless
+  std::set<std::string> told_scale_problems_;  // without their numbers
 
   bool map_wanted_ = false;  // for SLAM_MAP
   std::vector<MapSaveWish> save_wishes_;

@@ -30,6 +30,7 @@ void RunPublisher::forgetScale() {
   history_.clear();
   search_.forget();
   ground_keyframe_ = -1;
+  told_scale_problems_.clear();
   ++ground_looks_void_;
   if (scale_ != ScaleKind::unknown) log_.tell("the scale is unknown again: another map was begun");
   scale_ = ScaleKind::unknown;
@@ -66,7 +67,7 @@ void RunPublisher::followScale(Clock::time_point now) {
     scale_ = found->kind;
     publisher_.setScale(*found);
   }
-  tellScaleProblem(now);
+  tellScaleProblem();
   const double seconds = std::chrono::duration<double>(now - start_).count();
   if (search_.wantsMap(seconds) && run_->counts().points > 0) {
     search_.mapComes(seconds);
@@ -77,12 +78,10 @@ void RunPublisher::followScale(Clock::time_point now) {
 
 std::string RunPublisher::scaleProblem() const { return scale_ == ScaleKind::known_distance ? "" : search_.problem(); }
 
-void RunPublisher::tellScaleProblem(Clock::time_point now) {
-  constexpr auto least_interval = std::chrono::seconds(10);
-  const std::string problem = scaleProblem(), kind = withoutDigits(problem);
-  if (problem.empty() || kind == told_scale_problem_ || now < next_scale_problem_) return;
-  told_scale_problem_ = kind;
-  next_scale_problem_ = now + least_interval;
+// Once of each kind for a map: problems come and go, and the status has them all.
+void RunPublisher::tellScaleProblem() {
+  const std::string problem = scaleProblem();
+  if (problem.empty() || !told_scale_problems_.insert(withoutDigits(problem)).second) return;
   log_.tell((scale_ == ScaleKind::unknown ? "the scale is not known yet: " : "the scale is not renewed: ") + problem);
 }
 

@@ -4,10 +4,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <random>
 #include <set>
+#include <utility>
 
 namespace edgeslam {
 namespace {
@@ -30,10 +30,14 @@ struct Plane {
 
 double heightOver(const Plane& plane, const Eigen::Vector3d& point) { return plane.normal.dot(point) - plane.offset; }
 
+Eigen::Vector3d meanOf(const std::vector<Eigen::Vector3d>& places) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& place : places) sum += place;
+  return sum / static_cast<double>(places.size());
+}
+
 double meanHeight(const Plane& plane, const std::vector<Eigen::Vector3d>& cameras) {
-  double sum = 0;
-  for (const Eigen::Vector3d& camera : cameras) sum += heightOver(plane, camera);
-  return sum / static_cast<double>(cameras.size());
+  return heightOver(plane, meanOf(cameras));
 }
 
 // Across the plane a point is known as well as its distance: the share is the same by the intercept theorem.
@@ -50,11 +54,7 @@ bool isBelow(const Plane& plane, double height, const GroundPoint& point) {
   return heightOver(plane, point.position) < -std::max(clearly_below * height, 4 * pointSigma(point, height));
 }
 
-Eigen::Vector3d meanUp(const GroundScene& scene) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& up : scene.ups) sum += up;
-  return sum.normalized();
-}
+Eigen::Vector3d meanUp(const GroundScene& scene) { return meanOf(scene.ups).normalized(); }
 
 std::optional<Plane> planeThrough(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                                   const Eigen::Vector3d& up, double least_cosine) {
@@ -185,52 +185,63 @@ std::string problemOf(const Fit& fit, const Found& found, int below, const Groun
   return "";
 }
 
+// The lowest of several: as long as enough of what lies below a plane lies in another one.
+std::optional<Found> lowestPlane(const std::vector<const GroundPoint*>& points, const GroundScene& scene,
+                                 const GroundOptions& options) {
+  const Eigen::Vector3d up = meanUp(scene);
+  std::vector<const GroundPoint*> candidates = points;
+  std::optional<Found> lowest;
+  for (int i = 0; i < most_planes; ++i) {
+    std::optional<Found> lower = bestPlane(candidates, scene, up, options);
+    if (!lower || (lowest && static_cast<int>(lower->points.size()) < options.fewest_points)) break;
+    lowest = std::move(lower);
+    candidates.clear();
+    for (const GroundPoint* point : points) {
+      if (isBelow(lowest->plane, lowest->height, *point)) candidates.push_back(point);
+    }
+  }
+  return lowest;
+}
+
+// Least squares; then anew with the points that lie on the better plane.
+Fit refined(Found& found, const std::vector<const GroundPoint*>& points, const GroundScene& scene) {
+  Fit fit = fitted(found);
+  for (int i = 0; i < 2; ++i) {
+    found = pointsOn(fit.plane, points, scene);
+    if (found.points.size() < 3) break;
+    fit = fitted(found);
+  }
+  found.height = meanHeight(fit.plane, scene.cameras);
+  return fit;
+}
+
+GroundPlane refusal(const std::string& problem) {
+  GroundPlane ground;
+  ground.problem = problem;
+  return ground;
+}
+
 }  // namespace
 
 GroundPlane findGround(const GroundScene& scene, const GroundOptions& options) {
-  GroundPlane ground;
   if (static_cast<int>(scene.cameras.size()) < options.fewest_keyframes) {
-    ground.problem =
-        std::to_string(scene.cameras.size()) + " of " + std::to_string(options.fewest_keyframes) + " keyframes so far";
-    return ground;
+    return refusal(std::to_string(scene.cameras.size()) + " of " + std::to_string(options.fewest_keyframes) +
+                   " keyframes so far");
   }
-  const Eigen::Vector3d up = meanUp(scene);
-  std::vector<const GroundPoint*> candidates, all;
-  for (const GroundPoint& point : scene.points) all.push_back(&point);
-  candidates = all;
-  std::optional<Found> found;
-  // The lowest plane: as long as enough of what lies below a plane lies in another one.
-  for (int i = 0; i < most_planes; ++i) {
-    std::optional<Found> lower = bestPlane(candidates, scene, up, options);
-    if (!lower || (found && static_cast<int>(lower->points.size()) < options.fewest_points)) break;
-    found = std::move(lower);
-    std::vector<const GroundPoint*> below;
-    for (const GroundPoint* point : all) {
-      if (isBelow(found->plane, found->height, *point)) below.push_back(point);
-    }
-    candidates = std::move(below);
-  }
-  if (!found) {
-    ground.problem = "no plane square to the body's z axis (camera.body_T_camera) lies below the camera";
-    return ground;
-  }
-  Fit fit = fitted(*found);
-  for (int i = 0; i < 2; ++i) {  // points on the better plane
-    *found = pointsOn(fit.plane, all, scene);
-    if (found->points.size() < 3) break;
-    fit = fitted(*found);
-  }
-  found->height = meanHeight(fit.plane, scene.cameras);
-  const auto below = static_cast<int>(std::count_if(
-      all.begin(), all.end(), [&](const GroundPoint* point) { return isBelow(fit.plane, found->height, *point); }));
-  ground.problem = problemOf(fit, *found, below, scene, options);
+  std::vector<const GroundPoint*> points;
+  for (const GroundPoint& point : scene.points) points.push_back(&point);
+  std::optional<Found> found = lowestPlane(points, scene, options);
+  if (!found) return refusal("no plane square to the body's z axis (camera.body_T_camera) lies below the camera");
+  const Fit fit = refined(*found, points, scene);
+  const auto below = std::count_if(points.begin(), points.end(),
+                                   [&](const GroundPoint* point) { return isBelow(fit.plane, found->height, *point); });
+  GroundPlane ground;
+  ground.problem = problemOf(fit, *found, static_cast<int>(below), scene, options);
   ground.normal = fit.plane.normal;
   ground.offset = fit.plane.offset;
   ground.height = found->height;
+  ground.sigma = heightSigma(fit, meanOf(scene.cameras)) / found->height;
   ground.points = static_cast<int>(found->points.size());
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& camera : scene.cameras) centre += camera / static_cast<double>(scene.cameras.size());
-  ground.sigma = heightSigma(fit, centre) / found->height;
   return ground;
 }
 
