@@ -22,7 +22,10 @@ GroundPlane groundOf(const Map& map, const Pose& body_T_camera, const CameraHeig
 void ScaleFromCameraHeight::add(const GroundPlane& ground) {
   refused_ = ground.problem;
   for (ScaleMeasurement& earlier : looks_) earlier.variance += drift_per_look * drift_per_look;
-  if (!ground.problem.empty() || !(ground.height > 0) || !(ground.sigma > 0)) return;
+  if (!ground.problem.empty() || !(ground.height > 0) || !(ground.sigma > 0)) {
+    if (!looks_.empty()) looks_.pop_front();  // so that what is seen now and then by chance does not add up
+    return;
+  }
   looks_.push_back({std::log(options_.camera_height_m / ground.height), ground.sigma * ground.sigma});
   if (looks_.size() > most_looks) looks_.pop_front();
 }

@@ -19,7 +19,7 @@ class ScaleFromCameraHeight {
  public:
   explicit ScaleFromCameraHeight(const CameraHeightOptions& options) : options_(options) {}
 
-  // Once for each look at a map that has grown since the one before.
+  // Once for each look at a map that has grown since the one before. One without a ground takes the oldest one back.
   void add(const GroundPlane& ground);
   // Another map, or a corrected one.
   void clear();

@@ -114,6 +114,17 @@ TEST(ScaleSearch, GroundsThatContradictEachOtherAreNoScale) {
   EXPECT_NE(search.problem(), "");
 }
 
+TEST(ScaleSearch, AGroundThatIsSeenNowAndThenIsNone) {
+  ScaleSearch search(fromHeight(), Pose());
+  GroundPlane none;
+  none.problem = "no ground seen";
+  for (int look = 0; look < 20; ++look) {
+    search.add(groundAt(0.25));
+    search.add(none);
+  }
+  EXPECT_FALSE(search.everySecond());
+}
+
 TEST(ScaleSearch, WhyThereIsNoGroundIsTold) {
   ScaleSearch search(fromHeight(), Pose());
   GroundPlane none;
