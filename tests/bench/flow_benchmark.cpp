@@ -1,0 +1,160 @@
+// Optical flow forward and backward beside OpenCV's, on one thread: the same points, window and levels, on pictures
+// between which the motion is known. Prints how exact each is, and the times.
+// usage: flow_benchmark [--benchmark_...]
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/known_warp.h"
+#include "bench/ratio_reporter.h"
+#include "bench/timed_work.h"
+#include "edges/edge_detection.h"
+#include "edges/point_choice.h"
+#include "flow/optical_flow.h"
+
+namespace edgeslam {
+namespace {
+
+const cv::Size kSize(640, 480);
+constexpr double kWrong = 1;  // a point that is farther off than this was not followed but lost [px]
+
+struct FlowTask {
+  std::string name;
+  KnownWarp warp;
+  PicturePair pictures;
+  std::vector<ChosenPoint> points;
+  FlowOptions options;
+  ImagePyramid from, to;
+  std::vector<cv::Mat> opencv_from, opencv_to;  // with derivatives
+};
+
+// Where each point was found there; NaN where it was not.
+using Found = std::vector<Eigen::Vector2d>;
+
+const Eigen::Vector2d kNotFound = Eigen::Vector2d::Constant(std::nan(""));
+
+void buildOpenCvPyramid(const cv::Mat& image, const FlowOptions& options, std::vector<cv::Mat>& pyramid) {
+  cv::buildOpticalFlowPyramid(image, pyramid, {options.window, options.window}, options.levels - 1);
+}
+
+std::shared_ptr<FlowTask> makeTask(const std::string& name, Picture picture, const KnownWarp& warp) {
+  auto task = std::make_shared<FlowTask>();
+  task->name = name;
+  task->warp = warp;
+  task->pictures = renderPair(picture, kSize, warp);
+  // Farther from the border than they move, so that no window leaves the pictures.
+  PointChoiceOptions choice;
+  choice.border = 60;
+  task->points = choosePoints(task->pictures.first, detectEdges(task->pictures.first, {}), {}, choice);
+  task->from = buildPyramid(task->pictures.first, task->options.levels);
+  task->to = buildPyramid(task->pictures.second, task->options.levels);
+  buildOpenCvPyramid(task->pictures.first, task->options, task->opencv_from);
+  buildOpenCvPyramid(task->pictures.second, task->options, task->opencv_to);
+  return task;
+}
+
+Found followOurs(const FlowTask& task) {
+  Found found;
+  found.reserve(task.points.size());
+  for (const ChosenPoint& point : task.points) {
+    const FlowMatch match = followPoint(task.from, task.to, point.pixel, point.pixel, task.options);
+    const bool returns = match.found && backwardError(task.from, task.to, point.pixel, match.pixel, point.normal,
+                                                      task.options) <= task.options.forward_backward;
+    found.push_back(returns ? Eigen::Vector2d(match.pixel.cast<double>()) : kNotFound);
+  }
+  return found;
+}
+
+Found followOpenCv(const FlowTask& task, const cv::TermCriteria& criteria) {
+  std::vector<cv::Point2f> start, there, back;
+  for (const ChosenPoint& point : task.points) start.emplace_back(point.pixel.x(), point.pixel.y());
+  std::vector<unsigned char> status, status_back;
+  const cv::Size window(task.options.window, task.options.window);
+  const int levels = task.options.levels - 1;
+  cv::calcOpticalFlowPyrLK(task.opencv_from, task.opencv_to, start, there, status, cv::noArray(), window, levels,
+                           criteria);
+  back = start;
+  cv::calcOpticalFlowPyrLK(task.opencv_to, task.opencv_from, there, back, status_back, cv::noArray(), window, levels,
+                           criteria, cv::OPTFLOW_USE_INITIAL_FLOW);
+  Found found;
+  found.reserve(start.size());
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const Eigen::Vector2f off(back[i].x - start[i].x, back[i].y - start[i].y);
+    const bool returns = status[i] && status_back[i] &&
+                         std::abs(task.points[i].normal.dot(off)) <= static_cast<float>(task.options.forward_backward);
+    found.push_back(returns ? Eigen::Vector2d(there[i].x, there[i].y) : kNotFound);
+  }
+  return found;
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::nan("");
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Of corner-like points the distance from where they are, of points of an edge that across the edge.
+void printAccuracy(const FlowTask& task, const char* who, const Found& found) {
+  for (const bool corner : {true, false}) {
+    std::vector<double> errors;
+    int all = 0, wrong = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const ChosenPoint& point = task.points[i];
+      if (point.corner != corner) continue;
+      ++all;
+      if (found[i].hasNaN()) continue;
+      const Eigen::Vector2d error = found[i] - task.warp.apply(point.pixel.cast<double>());
+      const double size = corner ? error.norm() : std::abs(error.dot(task.warp.normalThere(point.normal.cast<double>())));
+      if (size > kWrong) ++wrong;
+      if (size <= kWrong) errors.push_back(size);
+    }
+    if (all == 0) continue;
+    std::printf("accuracy %-22s %-22s %-7s points %3d  right %5.1f %%  wrong %4.1f %%  error [px] median %.3f  p90 %.3f\n",
+                task.name.c_str(), who, corner ? "corners" : "edges", all,
+                100.0 * static_cast<double>(errors.size()) / all, 100.0 * wrong / all, quantile(errors, 0.5),
+                quantile(errors, 0.9));
+  }
+}
+
+void addTask(const std::shared_ptr<FlowTask>& task) {
+  const cv::TermCriteria usual(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.01);
+  const cv::TermCriteria as_ours(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, task->options.iterations,
+                                 AlignmentOptions().convergence);
+  printAccuracy(*task, "ours", followOurs(*task));
+  printAccuracy(*task, "OpenCV", followOpenCv(*task, usual));
+  printAccuracy(*task, "OpenCV, our criteria", followOpenCv(*task, as_ours));
+  const std::string kernel = "flow " + task->name;
+  addTimed(kernel + "/ours", [=] { benchmark::DoNotOptimize(followOurs(*task)); });
+  addTimed(kernel + "/calcOpticalFlowPyrLK", [=] { benchmark::DoNotOptimize(followOpenCv(*task, usual)); });
+  addTimed(kernel + "/calcOpticalFlowPyrLK as exact", [=] { benchmark::DoNotOptimize(followOpenCv(*task, as_ours)); });
+}
+
+}  // namespace
+}  // namespace edgeslam
+
+int main(int argument_count, char** arguments) {
+  benchmark::Initialize(&argument_count, arguments);
+  if (argument_count > 1) {
+    std::fprintf(stderr, "usage: flow_benchmark [--benchmark_...]\n");
+    return 2;
+  }
+  cv::setNumThreads(1);
+  using edgeslam::Picture;
+  const edgeslam::KnownWarp slow = edgeslam::turnAndShift(edgeslam::kSize, 0.7, 1.005, {2.3, -1.6});
+  const edgeslam::KnownWarp fast = edgeslam::turnAndShift(edgeslam::kSize, 2, 1.02, {9.4, 6.7});
+  edgeslam::addTask(edgeslam::makeTask("texture slow", Picture::texture, slow));
+  edgeslam::addTask(edgeslam::makeTask("texture fast", Picture::texture, fast));
+  edgeslam::addTask(edgeslam::makeTask("edges slow", Picture::edges_only, slow));
+  edgeslam::addTask(edgeslam::makeTask("edges fast", Picture::edges_only, fast));
+  edgeslam::RatioReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return 0;
+}
