@@ -140,15 +140,16 @@ void printAccuracy(const FlowTask& task, const char* who, const Found& found) {
       ++all;
       if (found[i].hasNaN()) continue;
       const Eigen::Vector2d error = found[i] - task.warp.apply(point.pixel.cast<double>());
-      const double size = corner ? error.norm() : std::abs(error.dot(task.warp.normalThere(point.normal.cast<double>())));
+      const double size =
+          corner ? error.norm() : std::abs(error.dot(task.warp.normalThere(point.normal.cast<double>())));
       if (size > kWrong) ++wrong;
       if (size <= kWrong) errors.push_back(size);
     }
     if (all == 0) continue;
-    std::printf("accuracy %-22s %-22s %-7s points %3d  right %5.1f %%  wrong %4.1f %%  error [px] median %.3f  p90 %.3f\n",
-                task.name.c_str(), who, corner ? "corners" : "edges", all,
-                100.0 * static_cast<double>(errors.size()) / all, 100.0 * wrong / all, quantile(errors, 0.5),
-                quantile(errors, 0.9));
+    std::printf(
+        "accuracy %-22s %-22s %-7s points %3d  right %5.1f %%  wrong %4.1f %%  error [px] median %.3f  p90 %.3f\n",
+        task.name.c_str(), who, corner ? "corners" : "edges", all, 100.0 * static_cast<double>(errors.size()) / all,
+        100.0 * wrong / all, quantile(errors, 0.5), quantile(errors, 0.9));
   }
 }
 

@@ -97,7 +97,8 @@ void addEdges(const cv::Mat& grey) {
   auto links = std::make_shared<std::array<std::vector<int>, 2>>();
   links->fill(std::vector<int>(thinned->points.size()));
   addTimed("neighbours/ours", [=] { chooseNeighbours(thinned->points, *named, (*links)[0], (*links)[1]); });
-  addTimed("neighbours/reference", [=] { chooseNeighboursReference(thinned->points, *named, (*links)[0], (*links)[1]); });
+  addTimed("neighbours/reference",
+           [=] { chooseNeighboursReference(thinned->points, *named, (*links)[0], (*links)[1]); });
 
   addTimed("edges/ours", [=] { detectEdges(grey, options, *workspace, *edges); });
   auto canny = std::make_shared<cv::Mat>();

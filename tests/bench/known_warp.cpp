@@ -46,8 +46,8 @@ GreyAt makePanels(const cv::Size& size) {
       const Eigen::Vector2d inside =
           panel.half_size - Eigen::Vector2d(std::abs(off.dot(panel.across)),
                                             std::abs(off.x() * panel.across.y() - off.y() * panel.across.x()));
-      const double share = panel.round ? covered(panel.half_size.x() / 2 - off.norm())
-                                       : covered(inside.x()) * covered(inside.y());
+      const double share =
+          panel.round ? covered(panel.half_size.x() / 2 - off.norm()) : covered(inside.x()) * covered(inside.y());
       grey += share * (panel.grey - grey);
     }
     return grey;
