@@ -1,5 +1,7 @@
 #include "flow/warped_window.h"
 
+#include <cstring>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "flow/warped_window.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set
@@ -36,11 +38,18 @@ struct RowOfSamples {
   HWY_ALIGN std::int32_t lower[window_row];    // the same below
 };
 
+// On little-endian processors, which are all that the instruction sets here run on.
+std::int32_t pairAt(const std::uint8_t* at) {
+  std::uint16_t pair = 0;
+  std::memcpy(&pair, at, sizeof(pair));
+  return pair;
+}
+
 void fetchPixels(const std::uint8_t* origin, std::ptrdiff_t step, int count, RowOfSamples& row) {
   for (int i = 0; i < count; ++i) {
     const std::uint8_t* at = origin + row.offsets[i];
-    row.upper[i] = at[0] | at[1] << 8;
-    row.lower[i] = at[step] | at[step + 1] << 8;
+    row.upper[i] = pairAt(at);
+    row.lower[i] = pairAt(at + step);
   }
 }
 

@@ -1,12 +1,13 @@
-// Optical flow forward and backward beside OpenCV's, on one thread: the same points, starts, window and levels, on
-// pictures between which the motion is known. Prints how exact each is, and the times.
-// usage: flow_benchmark [--benchmark_...]
+// Optical flow forward and backward, and what it is made of, beside OpenCV's, on one thread: the same points, starts,
+// window and levels, on pictures between which the motion is known. Prints how exact each is, and the times. usage:
+// flow_benchmark [--benchmark_...]
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 #include <random>
@@ -19,6 +20,8 @@
 #include "edges/edge_detection.h"
 #include "edges/point_choice.h"
 #include "flow/optical_flow.h"
+#include "flow/warped_window.h"
+#include "geometry/undistortion.h"
 
 namespace edgeslam {
 namespace {
@@ -129,7 +132,8 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-// Of corner-like points the distance from where they are, of points of an edge that across the edge.
+// Tab-separated: of corner-like points by the distance from where they are, of points of an edge by that across it: how
+// many percent are right, how many wrong, and of those right the median and the ninth decile [px].
 void printAccuracy(const FlowTask& task, const char* who, const Found& found) {
   for (const bool corner : {true, false}) {
     std::vector<double> errors;
@@ -145,11 +149,10 @@ void printAccuracy(const FlowTask& task, const char* who, const Found& found) {
       if (size > kWrong) ++wrong;
       if (size <= kWrong) errors.push_back(size);
     }
-    if (all == 0) continue;
-    std::printf(
-        "accuracy %-22s %-22s %-7s points %3d  right %5.1f %%  wrong %4.1f %%  error [px] median %.3f  p90 %.3f\n",
-        task.name.c_str(), who, corner ? "corners" : "edges", all, 100.0 * static_cast<double>(errors.size()) / all,
-        100.0 * wrong / all, quantile(errors, 0.5), quantile(errors, 0.9));
+    if (all < 20) continue;  // too few to tell
+    std::printf("accuracy\t%s\t%s\t%d %s\t%.1f\t%.1f\t%.3f\t%.3f\n", task.name.c_str(), who, all,
+                corner ? "corners" : "points of edges", 100.0 * static_cast<double>(errors.size()) / all,
+                100.0 * wrong / all, quantile(errors, 0.5), quantile(errors, 0.9));
   }
 }
 
@@ -166,6 +169,89 @@ void addTask(const std::shared_ptr<FlowTask>& task) {
   addTimed(kernel + "/same with our criteria", [=] { benchmark::DoNotOptimize(followOpenCv(*task, as_ours)); });
 }
 
+// A patch looked at in the way of flow: sampled from one picture, and compared with a place in the other.
+void addPatches(const FlowTask& task) {
+  constexpr int side = 15;
+  const cv::Mat from = task.from.levels[0], to = task.to.levels[0];
+  const auto step = static_cast<std::ptrdiff_t>(from.step[0]);
+  const std::uint8_t* corner = from.ptr(200) + 300;
+  const std::uint8_t* other = to.ptr(202) + 303;
+  const BilinearWeights weights = bilinearWeights(0.3f, 0.6f);
+  auto window = std::make_shared<SampledWindow>();
+  auto patch = std::make_shared<PatchSamples>();
+  constexpr std::size_t read = (side + 3) * (side + 3), kept = 3 * side * side * sizeof(std::int16_t);
+  addTimed("patch made/ours", [=] {
+    sampleWindow(corner, step, weights, side, *window);
+    benchmark::DoNotOptimize(makePatchSamples(*window, side, *patch));
+  });
+  addTimed("patch made/reference", [=] {
+    sampleWindowReference(corner, step, weights, side, *window);
+    benchmark::DoNotOptimize(makePatchSamplesReference(*window, side, *patch));
+  });
+  addCopy("patch made", read + kept);
+  addTimed("patch compared/ours", [=] { benchmark::DoNotOptimize(comparePatch(*patch, other, step, weights)); });
+  addTimed("patch compared/reference",
+           [=] { benchmark::DoNotOptimize(comparePatchReference(*patch, other, step, weights)); });
+  struct Compared {
+    cv::Mat window, patch, correlation;
+  };
+  auto compared = std::make_shared<Compared>();
+  cv::getRectSubPix(from, {side, side}, {307.3f, 207.6f}, compared->patch);
+  addTimed("patch compared/getRectSubPix, matchTemplate", [=] {
+    cv::getRectSubPix(to, {side, side}, {310.3f, 209.6f}, compared->window);
+    cv::matchTemplate(compared->window, compared->patch, compared->correlation, cv::TM_CCOEFF_NORMED);
+  });
+  addCopy("patch compared", (side + 1) * (side + 1) + kept);
+
+  WarpedGrid grid;
+  grid.x = 310 << 16;
+  grid.y = 210 << 16;
+  grid.x_by_row = 5000;
+  grid.y_by_column = -4000;
+  const std::uint8_t* origin = to.data;
+  addTimed("patch warped/ours", [=] { sampleWarpedWindow(origin, step, grid, side, *window); });
+  addTimed("patch warped/reference", [=] { sampleWarpedWindowReference(origin, step, grid, side, *window); });
+  const cv::Mat affine = (cv::Mat_<double>(2, 3) << 1, 5000.0 / 65536, 301, -4000.0 / 65536, 1, 202);
+  addTimed("patch warped/warpAffine", [=] {
+    cv::warpAffine(to, compared->window, affine, {side + 2, side + 2}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP);
+  });
+  addCopy("patch warped", read + (side + 2) * (side + 2) * sizeof(std::int16_t));
+}
+
+// Both models, for the points of a frame.
+void addUndistortion(const FlowTask& task) {
+  const Camera pinhole{CameraModel::pinhole_radial_tangential, 640, 480, 517.3, 516.5, 318.6, 255.3,
+                       {0.12, -0.22, -0.0022, 0.0012, 0}};
+  const Camera fisheye{CameraModel::kannala_brandt,        640, 480, 285, 285, 318.6, 255.3,
+                       {0.0034, 0.0007, -0.002, 0.0002, 0}};
+  auto pixels = std::make_shared<std::vector<Eigen::Vector2d>>();
+  auto points = std::make_shared<std::vector<cv::Point2d>>();
+  for (const ChosenPoint& point : task.points) {
+    pixels->push_back(point.pixel.cast<double>());
+    points->emplace_back(point.pixel.x(), point.pixel.y());
+  }
+  for (const Camera& camera : {pinhole, fisheye}) {
+    const bool is_fisheye = camera.model == CameraModel::kannala_brandt;
+    const std::string kernel = is_fisheye ? "undistortion, fisheye" : "undistortion, pinhole";
+    auto bearings = std::make_shared<std::vector<Eigen::Vector3d>>(pixels->size());
+    addTimed(kernel + "/ours", [=] { bearingsOf(camera, pixels->data(), pixels->size(), bearings->data()); });
+    addTimed(kernel + "/reference",
+             [=] { bearingsReference(camera, pixels->data(), pixels->size(), bearings->data()); });
+    const cv::Mat matrix = (cv::Mat_<double>(3, 3) << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+    const cv::Mat distortion =
+        cv::Mat(1, is_fisheye ? 4 : 5, CV_64F, const_cast<double*>(camera.distortion.data())).clone();
+    auto undistorted = std::make_shared<std::vector<cv::Point2d>>();
+    addTimed(kernel + "/undistortPoints", [=] {
+      if (is_fisheye) {
+        cv::fisheye::undistortPoints(*points, *undistorted, matrix, distortion);
+      } else {
+        cv::undistortPoints(*points, *undistorted, matrix, distortion);
+      }
+    });
+    addCopy(kernel, pixels->size() * 5 * sizeof(double));
+  }
+}
+
 }  // namespace
 }  // namespace edgeslam
 
@@ -179,7 +265,10 @@ int main(int argument_count, char** arguments) {
   using edgeslam::Picture;
   using edgeslam::Start;
   const edgeslam::KnownWarp warp = edgeslam::turnAndShift(edgeslam::kSize, 2, 1.02, {5.4, 3.7});
-  edgeslam::addTask(edgeslam::makeTask("texture", Picture::texture, warp, Start::predicted));
+  const auto textured = edgeslam::makeTask("texture", Picture::texture, warp, Start::predicted);
+  edgeslam::addPatches(*textured);
+  edgeslam::addUndistortion(*textured);
+  edgeslam::addTask(textured);
   edgeslam::addTask(edgeslam::makeTask("edges", Picture::edges_only, warp, Start::predicted));
   edgeslam::addTask(edgeslam::makeTask("texture, unpredicted", Picture::texture, warp, Start::where_it_was));
   edgeslam::addTask(edgeslam::makeTask("edges, unpredicted", Picture::edges_only, warp, Start::where_it_was));

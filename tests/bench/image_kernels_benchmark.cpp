@@ -12,6 +12,7 @@
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
 #include <vector>
@@ -39,17 +40,12 @@ void addPyramid(const cv::Mat& grey) {
     grey.copyTo(pyramid->levels[0]);
     for (size_t i = 1; i < pyramid->levels.size(); ++i) halveReference(pyramid->levels[i - 1], pyramid->levels[i]);
   });
-  auto levels = std::make_shared<std::vector<cv::Mat>>(kLevels);
-  auto bordered = std::make_shared<std::vector<cv::Mat>>(kLevels);
-  addTimed("pyramid/pyrDown", [=] {
-    for (size_t i = 0; i < kLevels; ++i) {
-      if (i > 0) cv::pyrDown((*levels)[i - 1], (*levels)[i]);
-      if (i == 0) (*levels)[0] = grey;
-      const int border = pyramid_border;
-      cv::copyMakeBorder((*levels)[i], (*bordered)[i], border, border, border, border, cv::BORDER_REFLECT_101);
-    }
+  auto opencv = std::make_shared<std::vector<cv::Mat>>();
+  addTimed("pyramid/buildOpticalFlowPyramid", [=] {
+    cv::buildOpticalFlowPyramid(grey, *opencv, {pyramid_border, pyramid_border}, kLevels - 1,
+                                /*withDerivatives=*/false);
   });
-  addCopy("pyramid", grey.total() * 4 / 3);
+  addCopy("pyramid", grey.total() * 8 / 3);  // each level is read once and written once
 }
 
 void addDifferenceOfGaussians(const cv::Mat& grey) {
@@ -61,14 +57,14 @@ void addDifferenceOfGaussians(const cv::Mat& grey) {
     cv::Mat scaled, narrow, wide, dog;
   };
   auto blurs = std::make_shared<Blurs>();
-  addTimed("dog/GaussianBlur", [=] {
+  addTimed("dog/GaussianBlur twice", [=] {
     const double further = options.sigma * std::sqrt(options.sigma_ratio * options.sigma_ratio - 1);
     grey.convertTo(blurs->scaled, CV_16U, kBlurScale);
     cv::GaussianBlur(blurs->scaled, blurs->narrow, {11, 11}, options.sigma, options.sigma, cv::BORDER_REPLICATE);
     cv::GaussianBlur(blurs->narrow, blurs->wide, {9, 9}, further, further, cv::BORDER_REPLICATE);
     cv::subtract(blurs->narrow, blurs->wide, blurs->dog, cv::noArray(), CV_16S);
   });
-  addCopy("dog", grey.total() * 5 / 2);  // half of what is read and written: 1 byte, and 2 of each image
+  addCopy("dog", grey.total() * 5);  // reads 1 byte a pixel, writes 2 of each image
 }
 
 void addEdges(const cv::Mat& grey) {
@@ -85,14 +81,23 @@ void addEdges(const cv::Mat& grey) {
   addTimed("edge_pixels/ours", [=] { findEdgePixels(*blurs, options, *pixels, *index); });
   addTimed("edge_pixels/reference", [=] { findEdgePixelsReference(*blurs, options, *pixels, *index); });
   auto sobel = std::make_shared<std::array<cv::Mat, 2>>();
-  addTimed("edge_pixels/Sobel", [=] {
+  addTimed("edge_pixels/Sobel, both ways", [=] {
     cv::Sobel(grey, (*sobel)[0], CV_16S, 1, 0);
     cv::Sobel(grey, (*sobel)[1], CV_16S, 0, 1);
   });
 
+  addCopy("edge_pixels", grey.total() * 8);  // reads 2 bytes a pixel of each image, writes 4 of the index
+
   auto thinned = std::make_shared<EdgePixels>();
   auto named = std::make_shared<cv::Mat>();
   findEdgePixels(*blurs, options, *thinned, *named);
+  const cv::Mat unthinned = named->clone();
+  auto again = std::make_shared<cv::Mat>(unthinned.clone());
+  addTimed("thinning with copy of index/ours", [=] {
+    unthinned.copyTo(*again);
+    thin(thinned->points, *again);
+  });
+  addCopy("thinning with copy of index", unthinned.total() * 8);
   thin(thinned->points, *named);
   auto links = std::make_shared<std::array<std::vector<int>, 2>>();
   links->fill(std::vector<int>(thinned->points.size()));
@@ -100,9 +105,13 @@ void addEdges(const cv::Mat& grey) {
   addTimed("neighbours/reference",
            [=] { chooseNeighboursReference(thinned->points, *named, (*links)[0], (*links)[1]); });
 
+  const std::size_t touched = thinned->points.size() * (sizeof(EdgePixel) + 2 * sizeof(int) + 6 * 4 * sizeof(float));
+  addCopy("neighbours", touched);  // each point, the six next to it, and what is chosen
+
   addTimed("edges/ours", [=] { detectEdges(grey, options, *workspace, *edges); });
   auto canny = std::make_shared<cv::Mat>();
   addTimed("edges/Canny", [=] { cv::Canny(grey, *canny, 50, 100); });
+  addCopy("edges", grey.total() * 5 + edges->points.size() * sizeof(EdgePoint));  // reads 1 byte a pixel, writes 4
 }
 
 void addPoints(const cv::Mat& grey) {
@@ -121,6 +130,17 @@ void addPoints(const cv::Mat& grey) {
   addTimed("tensors/reference", [=] {
     for (const cv::Rect& window : windows) benchmark::DoNotOptimize(gradientProductsReference(grey, window));
   });
+  auto gradients = std::make_shared<cv::Mat>();
+  addTimed("tensors/cornerEigenValsAndVecs, whole image", [=] { cv::cornerEigenValsAndVecs(grey, *gradients, 15, 3); });
+  addCopy("tensors", windows.size() * (17 * 17 + sizeof(GradientProducts)));
+
+  auto candidates = std::make_shared<std::vector<PointCandidate>>();
+  auto spacing = std::make_shared<PointSpacing>(grey.size(), PointChoiceOptions().spacing);
+  addTimed("candidates/ours", [=] {
+    candidates->clear();
+    findPointCandidates(grey, *edges, *spacing, {}, *candidates);
+  });
+  addTimed("candidates/cornerMinEigenVal", [=] { cv::cornerMinEigenVal(grey, *gradients, 15, 3); });
   addTimed("points/ours", [=] { choosePoints(grey, *edges, {}, {}, *workspace, *chosen); });
   auto corners = std::make_shared<std::vector<cv::Point2f>>();
   addTimed("points/goodFeaturesToTrack", [=] { cv::goodFeaturesToTrack(grey, *corners, 550, 0.01, 6); });
