@@ -166,7 +166,8 @@ void addTask(const std::shared_ptr<FlowTask>& task) {
   const std::string kernel = "flow " + task->name;
   addTimed(kernel + "/ours", [=] { benchmark::DoNotOptimize(followOurs(*task)); });
   addTimed(kernel + "/calcOpticalFlowPyrLK", [=] { benchmark::DoNotOptimize(followOpenCv(*task, usual)); });
-  addTimed(kernel + "/same with our criteria", [=] { benchmark::DoNotOptimize(followOpenCv(*task, as_ours)); });
+  addTimed(kernel + "/calcOpticalFlowPyrLK, our criteria",
+           [=] { benchmark::DoNotOptimize(followOpenCv(*task, as_ours)); });
 }
 
 // A patch looked at in the way of flow: sampled from one picture, and compared with a place in the other.
