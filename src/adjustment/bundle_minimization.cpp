@@ -1,0 +1,112 @@
+#include "adjustment/bundle_minimization.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace edgeslam {
+namespace {
+
+constexpr int kMostDenseCameras = 30;
+constexpr double kFirstDamping = 1e-4;
+constexpr double kLeastDamping = 1e-9;
+constexpr double kMostDamping = 1e8;
+constexpr double kConverged = 1e-6;  // of the cost; outliers inflate the cost that this is relative to
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+void readState(const BundleProblem& problem, const BundleStructure& structure, BundleState& state) {
+  state.rotations.clear();
+  state.frames.clear();
+  for (const BundleCamera& c : problem.cameras) {
+    state.rotations.push_back(c.world_T_camera.rotation);
+    state.frames.push_back(cameraFrame(c.world_T_camera));
+  }
+  state.inverse_depths.clear();
+  for (const StructuredPoint& p : structure.points)
+    state.inverse_depths.push_back(problem.points[at(p.index)].inverse_depth);
+}
+
+Eigen::Vector3d meanCentre(const BundleState& state) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const CameraFrame& frame : state.frames) sum += frame.centre;
+  return sum / static_cast<double>(state.frames.size());
+}
+
+void moveState(const BundleWorkspace& workspace, BundleState& moved) {
+  moved = workspace.state;
+  for (std::size_t k = 0; k < workspace.structure.camera_of_unknown.size(); ++k) {
+    const Vector6d change = workspace.step.changes.segment<6>(static_cast<Eigen::Index>(6 * k));
+    const std::size_t c = at(workspace.structure.camera_of_unknown[k]);
+    moved.rotations[c] = (rotationExp(change.tail<3>()) * moved.rotations[c]).normalized();
+    moved.frames[c] = {moved.rotations[c].toRotationMatrix(), moved.frames[c].centre + change.head<3>()};
+  }
+  for (std::size_t i = 0; i < moved.inverse_depths.size(); ++i) moved.inverse_depths[i] += workspace.depth_changes[i];
+}
+
+// What the step takes off the cost if all is linear: half of it is undone by the curvature.
+double expectedGain(const BundleWorkspace& workspace) {
+  double descent = -workspace.linearization.camera_gradient.dot(workspace.step.twists);
+  for (std::size_t i = 0; i < workspace.depth_changes.size(); ++i)
+    descent -= workspace.linearization.points[i].gradient * workspace.depth_changes[i];
+  return 0.5 * descent;
+}
+
+bool computeStep(double damping, BundleWorkspace& workspace) {
+  if (!workspace.solver.solve(workspace.structure, workspace.state, workspace.linearization, damping, workspace.step))
+    return false;
+  changeDepths(workspace.structure, workspace.linearization, workspace.step.twists, workspace.depth_changes);
+  return true;
+}
+
+}  // namespace
+
+int minimizeBundle(const Camera& camera, const BundleProblem& problem, const BundleOptions& options,
+                   BundleWorkspace& workspace) {
+  structureBundle(problem, kMostDenseCameras, workspace.structure);
+  if (workspace.structure.points.empty()) return -1;
+  workspace.solver.prepare(workspace.structure);
+  readState(problem, workspace.structure, workspace.state);
+  BundleLinearization& linearization = workspace.linearization;
+  linearization.origin = meanCentre(workspace.state);
+
+  const auto linearizeAt = [&](const BundleState& state, double damping) {
+    linearizeBundle(camera, workspace.structure, state, options.huber, damping, linearization);
+    return linearization.cost;
+  };
+  double damping = kFirstDamping;
+  double cost = linearizeAt(workspace.state, damping);
+  if (!std::isfinite(cost)) return -1;
+  bool stepped = false;
+  int iteration = 0;
+  while (iteration < options.iterations) {
+    if (options.interrupted && options.interrupted->load(std::memory_order_relaxed)) return -1;
+    ++iteration;
+    const bool solved = computeStep(damping, workspace);
+    const bool nearly_there = solved && expectedGain(workspace) < kConverged * cost;
+    const bool last = nearly_there || iteration == options.iterations;
+    // Most steps are taken, so that the next equations are made at once, for the damping that goes with a step taken.
+    const double next_damping = std::max(kLeastDamping, damping / 3);
+    double new_cost = cost;
+    if (solved) {
+      stepped = true;
+      moveState(workspace, workspace.candidate);
+      new_cost = last ? bundleCost(camera, workspace.structure, workspace.candidate, options.huber)
+                      : linearizeAt(workspace.candidate, next_damping);
+    }
+    if (solved && new_cost < cost) {
+      std::swap(workspace.state, workspace.candidate);
+      const double gain = cost - new_cost;
+      cost = new_cost;
+      damping = next_damping;
+      if (last || gain < kConverged * cost) break;
+    } else {
+      if (last) break;
+      damping *= 10;
+      if (damping > kMostDamping) break;
+      linearizeAt(workspace.state, damping);
+    }
+  }
+  return stepped || options.iterations == 0 ? iteration : -1;
+}
+
+}  // namespace edgeslam
