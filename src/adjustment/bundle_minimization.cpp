@@ -9,6 +9,7 @@ namespace {
 constexpr int kMostDenseCameras = 30;
 constexpr double kFirstDamping = 1e-4;
 constexpr double kLeastDamping = 1e-9;
+constexpr double kBestFactor = 1.0 / 3;  // that the damping is multiplied by after a step as good as expected
 constexpr double kMostDamping = 1e8;
 constexpr double kConverged = 1e-6;  // of the cost; outliers inflate the cost that this is relative to
 
@@ -58,6 +59,13 @@ bool computeStep(double damping, BundleWorkspace& workspace) {
   return true;
 }
 
+// Nielsen's rule (Madsen, Nielsen, Tingleff, Methods for Non-Linear Least Squares Problems, 2004, section 3.2): what
+// the damping is multiplied by after a step, from what it gained against what was expected.
+double dampingFactor(double gain, double expected) {
+  const double doubt = 2 * gain / expected - 1;
+  return std::max(kBestFactor, 1 - doubt * doubt * doubt);
+}
+
 }  // namespace
 
 int minimizeBundle(const Camera& camera, const BundleProblem& problem, const BundleOptions& options,
@@ -66,47 +74,50 @@ int minimizeBundle(const Camera& camera, const BundleProblem& problem, const Bun
   if (workspace.structure.points.empty()) return -1;
   workspace.solver.prepare(workspace.structure);
   readState(problem, workspace.structure, workspace.state);
-  BundleLinearization& linearization = workspace.linearization;
-  linearization.origin = meanCentre(workspace.state);
+  workspace.linearization.origin = meanCentre(workspace.state);
 
   const auto linearizeAt = [&](const BundleState& state, double damping) {
-    linearizeBundle(camera, workspace.structure, state, options.huber, damping, linearization);
-    return linearization.cost;
+    linearizeBundle(camera, workspace.structure, state, options.huber, damping, workspace.linearization);
+    return workspace.linearization.cost;
   };
-  double damping = kFirstDamping;
+  double damping = kFirstDamping, refusal_factor = 2;
   double cost = linearizeAt(workspace.state, damping);
   if (!std::isfinite(cost)) return -1;
-  bool stepped = false;
+  bool ever_solved = false;
   int iteration = 0;
   while (iteration < options.iterations) {
     if (options.interrupted && options.interrupted->load(std::memory_order_relaxed)) return -1;
     ++iteration;
     const bool solved = computeStep(damping, workspace);
-    const bool nearly_there = solved && expectedGain(workspace) < kConverged * cost;
-    const bool last = nearly_there || iteration == options.iterations;
-    // Most steps are taken, so that the next equations are made at once, for the damping that goes with a step taken.
-    const double next_damping = std::max(kLeastDamping, damping / 3);
+    ever_solved |= solved;
+    const double expected = solved ? expectedGain(workspace) : 0;
+    const bool last = iteration == options.iterations || (solved && expected < kConverged * cost);
+    // Most steps are good, so that the next equations are made at once, with the damping that follows a good step.
+    const double hoped_damping = std::max(kLeastDamping, kBestFactor * damping);
     double new_cost = cost;
     if (solved) {
-      stepped = true;
       moveState(workspace, workspace.candidate);
       new_cost = last ? bundleCost(camera, workspace.structure, workspace.candidate, options.huber)
-                      : linearizeAt(workspace.candidate, next_damping);
+                      : linearizeAt(workspace.candidate, hoped_damping);
     }
-    if (solved && new_cost < cost) {
+    const double gain = cost - new_cost;
+    if (gain > 0) {
       std::swap(workspace.state, workspace.candidate);
-      const double gain = cost - new_cost;
       cost = new_cost;
-      damping = next_damping;
       if (last || gain < kConverged * cost) break;
+      const double factor = dampingFactor(gain, expected);
+      const bool as_hoped = factor < 0.5;
+      damping = as_hoped ? hoped_damping : std::min(kMostDamping, factor * damping);
+      refusal_factor = 2;
+      if (!as_hoped) linearizeAt(workspace.state, damping);
     } else {
-      if (last) break;
-      damping *= 10;
-      if (damping > kMostDamping) break;
+      damping *= refusal_factor;
+      refusal_factor *= 2;
+      if (last || damping > kMostDamping) break;
       linearizeAt(workspace.state, damping);
     }
   }
-  return stepped || options.iterations == 0 ? iteration : -1;
+  return ever_solved || options.iterations == 0 ? iteration : -1;
 }
 
 }  // namespace edgeslam
