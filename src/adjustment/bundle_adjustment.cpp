@@ -30,56 +30,79 @@ bool indicesInRange(const BundleProblem& problem) {
   return true;
 }
 
-// Errors, depth deviations and robust cost of a problem as it stands.
-struct Assessment {
-  std::vector<double> errors;
-  std::vector<double> depth_sigmas;
-  double cost = 0;
-};
-
-Assessment assess(const Camera& camera, const BundleProblem& problem, double huber) {
+// Calls function(index, residual or null where behind the camera, its derivative by the sight, baseline) for every
+// observation with usable values. The derivative is computed where `derivatives`.
+template <typename Function>
+void forEachResidual(const Camera& camera, const BundleProblem& problem, bool derivatives, const Function& function) {
   std::vector<CameraFrame> frames;
   frames.reserve(problem.cameras.size());
   for (const BundleCamera& c : problem.cameras) frames.push_back(cameraFrame(c.world_T_camera));
-  Assessment assessment;
-  assessment.errors.assign(problem.observations.size(), kInfinity);
-  std::vector<double> information(problem.points.size(), 0.0);
   for (std::size_t k = 0; k < problem.observations.size(); ++k) {
     const BundleObservation& o = problem.observations[k];
     const BundlePoint& p = problem.points[at(o.point)];
     if (!usable(p) || !usable(o.measurement)) continue;
     const CameraFrame &host = frames[at(p.host)], &target = frames[at(o.camera)];
     Eigen::Vector2d residual;
-    Matrix23d by_sight;
-    if (!sightResidual(camera, {o.measurement.pixel, whitening(o.measurement)}, target,
-                       sight(host, target, p.host_bearing, p.inverse_depth), residual, &by_sight)) {
-      assessment.cost += 0.5 * huberLoss(behind_norm * behind_norm, huber);
-      continue;
-    }
-    const double norm = residual.norm();
-    assessment.errors[k] = norm;
-    assessment.cost += 0.5 * huberLoss(norm * norm, huber);
-    information[at(o.point)] += huberWeight(norm, huber) * (by_sight * (host.centre - target.centre)).squaredNorm();
+    Matrix23d by_sight = Matrix23d::Zero();
+    const bool seen = sightResidual(camera, {o.measurement.pixel, whitening(o.measurement)}, target,
+                                    sight(host, target, p.host_bearing, p.inverse_depth), residual,
+                                    derivatives ? &by_sight : nullptr);
+    function(k, seen ? &residual : nullptr, by_sight, host.centre - target.centre);
   }
+}
+
+double priorCost(const BundleProblem& problem) {
+  double cost = 0;
+  for (const BundlePoint& p : problem.points) {
+    if (!usable(p) || !(p.prior_sigma > 0)) continue;
+    const double error = (p.inverse_depth - p.prior_inverse_depth) / p.prior_sigma;
+    cost += 0.5 * error * error;
+  }
+  return cost;
+}
+
+double robustCost(const Camera& camera, const BundleProblem& problem, double huber) {
+  double cost = 0;
+  forEachResidual(camera, problem, false,
+                  [&](std::size_t, const Eigen::Vector2d* residual, const Matrix23d&, const Eigen::Vector3d&) {
+                    cost += 0.5 * huberLoss(residual ? residual->squaredNorm() : behind_norm * behind_norm, huber);
+                  });
+  return cost + priorCost(problem);
+}
+
+// Errors, depth deviations and final cost of a problem as it stands.
+void assess(const Camera& camera, const BundleProblem& problem, double huber, BundleResult& result) {
+  result.errors.assign(problem.observations.size(), kInfinity);
+  std::vector<double> information(problem.points.size(), 0.0);
+  double cost = 0;
+  forEachResidual(
+      camera, problem, true,
+      [&](std::size_t k, const Eigen::Vector2d* residual, const Matrix23d& by_sight, const Eigen::Vector3d& baseline) {
+        const double norm = residual ? residual->norm() : behind_norm;
+        cost += 0.5 * huberLoss(norm * norm, huber);
+        if (!residual) return;
+        result.errors[k] = norm;
+        information[at(problem.observations[k].point)] +=
+            huberWeight(norm, huber) * (by_sight * baseline).squaredNorm();
+      });
+  result.final_cost = cost + priorCost(problem);
   for (std::size_t i = 0; i < problem.points.size(); ++i) {
     const BundlePoint& p = problem.points[i];
-    if (usable(p) && p.prior_sigma > 0) {
-      const double error = (p.inverse_depth - p.prior_inverse_depth) / p.prior_sigma;
-      assessment.cost += 0.5 * error * error;
-      information[i] += 1 / (p.prior_sigma * p.prior_sigma);
-    }
-    assessment.depth_sigmas.push_back(information[i] > 0 ? 1 / std::sqrt(information[i]) : 0);
+    if (usable(p) && p.prior_sigma > 0) information[i] += 1 / (p.prior_sigma * p.prior_sigma);
+    result.depth_sigmas.push_back(information[i] > 0 ? 1 / std::sqrt(information[i]) : 0);
   }
-  return assessment;
 }
 
 // Brings the scale camera back to its distance from camera 0 by scaling centres about camera 0 and depths with them,
 // which changes no residual but the depth priors'. Where another camera or a point is fixed, that holds the scale
 // already. False where the distance has collapsed.
-bool keepScale(double distance_before, BundleProblem& problem) {
+bool keepScale(const std::vector<BundleCamera>& before, BundleProblem& problem) {
+  const auto distance = [&](const std::vector<BundleCamera>& cameras) {
+    return (cameras[at(problem.scale_camera)].world_T_camera.translation - cameras[0].world_T_camera.translation)
+        .norm();
+  };
   const Eigen::Vector3d origin = problem.cameras[0].world_T_camera.translation;
-  const double distance = (problem.cameras[at(problem.scale_camera)].world_T_camera.translation - origin).norm();
-  const double scale = distance_before / distance;
+  const double scale = distance(before) / distance(problem.cameras);
   if (!(scale > 1e-6 && scale < 1e6)) return false;
   for (std::size_t i = 1; i < problem.cameras.size(); ++i) {
     Eigen::Vector3d& centre = problem.cameras[i].world_T_camera.translation;
@@ -122,28 +145,23 @@ BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const Bu
     result.depth_sigmas.assign(problem.points.size(), 0);
     return result;
   }
-  Assessment assessment = assess(camera, problem, options.huber);
-  result.initial_cost = result.final_cost = assessment.cost;
+  result.initial_cost = robustCost(camera, problem, options.huber);
 
   BundleWorkspace workspace;
   const int iterations = minimizeBundle(camera, problem, options, workspace);
-  BundleProblem adjusted = problem;
-  bool usable = iterations >= 0 && readBack(workspace.structure, workspace.state, adjusted);
-  if (usable && scaleIsFree(problem)) {
-    const double distance = (problem.cameras[at(problem.scale_camera)].world_T_camera.translation -
-                             problem.cameras[0].world_T_camera.translation)
-                                .norm();
-    usable = keepScale(distance, adjusted);
+  if (iterations >= 0) {
+    const std::vector<BundleCamera> cameras_before = problem.cameras;
+    const std::vector<BundlePoint> points_before = problem.points;
+    result.usable = readBack(workspace.structure, workspace.state, problem) &&
+                    (!scaleIsFree(problem) || keepScale(cameras_before, problem));
+    if (result.usable) {
+      result.iterations = iterations;
+    } else {
+      problem.cameras = cameras_before;
+      problem.points = points_before;
+    }
   }
-  if (usable) {
-    problem = std::move(adjusted);
-    assessment = assess(camera, problem, options.huber);
-    result.usable = true;
-    result.final_cost = assessment.cost;
-    result.iterations = iterations;
-  }
-  result.errors = std::move(assessment.errors);
-  result.depth_sigmas = std::move(assessment.depth_sigmas);
+  assess(camera, problem, options.huber, result);
   return result;
 }
 

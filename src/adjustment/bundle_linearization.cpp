@@ -19,6 +19,7 @@ double priorCost(const StructuredPoint& point, double inverse_depth) {
 void clear(const BundleStructure& structure, BundleLinearization& linearization) {
   linearization.cost = 0;
   linearization.blocks.assign(structure.places.size(), Matrix6d::Zero());
+  linearization.pairs.assign(structure.places.size(), Matrix6d::Zero());
   linearization.diagonal.assign(structure.camera_of_unknown.size(), Matrix6d::Zero());
   const auto unknowns = static_cast<Eigen::Index>(6 * structure.camera_of_unknown.size());
   linearization.gradient.setZero(unknowns);
@@ -27,12 +28,19 @@ void clear(const BundleStructure& structure, BundleLinearization& linearization)
   linearization.mixed.resize(structure.observations.size());
 }
 
+// Adds first first^T + second second^T: the lower triangle, and what shares a packet of two with it.
+inline void addOuterProducts(const Vector6d& first, const Vector6d& second, Matrix6d& block) {
+  for (int j = 0; j < 2; ++j) block.col(j) += first(j) * first + second(j) * second;
+  for (int j = 2; j < 4; ++j) block.col(j).tail<4>() += first(j) * first.tail<4>() + second(j) * second.tail<4>();
+  for (int j = 4; j < 6; ++j) block.col(j).tail<2>() += first(j) * first.tail<2>() + second(j) * second.tail<2>();
+}
+
 // Normal equations of one point; kept from point to point for their memory.
 struct PointEquations {
-  double information = 0, gradient = 0;  // of the inverse depth
-  std::vector<Vector6d> mixed;           // of the inverse depth with each viewer's twist
-  Matrix6d host_block = Matrix6d::Zero();
-  Vector6d host_gradient = Vector6d::Zero();
+  double information = 0, gradient = 0;                      // of the inverse depth
+  std::vector<Vector6d> mixed;                               // of the inverse depth with each viewer's twist
+  Eigen::Vector3d sight_mixed = Eigen::Vector3d::Zero();     // of the inverse depth with the sights, summed
+  Eigen::Vector3d sight_gradient = Eigen::Vector3d::Zero();  // by the sights, summed
 };
 
 class Linearizer {
@@ -56,11 +64,11 @@ class Linearizer {
     equations_.information = point.prior_information;
     equations_.gradient = point.prior_information * (eliminated.inverse_depth - point.prior_inverse_depth);
     equations_.mixed.assign(at(point.end_viewer - point.first_viewer), Vector6d::Zero());
-    equations_.host_block.setZero();
-    equations_.host_gradient.setZero();
+    equations_.sight_mixed.setZero();
+    equations_.sight_gradient.setZero();
     linearization_.cost += priorCost(point, eliminated.inverse_depth);
     for (int k = point.first_observation; k < point.end_observation; ++k) addObservation(point, eliminated, ray, k);
-    addHost(point);
+    addHost(point, eliminated);
     eliminate(point, eliminated);
   }
 
@@ -90,8 +98,8 @@ class Linearizer {
       mixed = by_sight.transpose() * by_depth;
       equations_.information += by_depth.squaredNorm();
       equations_.gradient += by_depth.dot(residual);
+      equations_.sight_mixed += mixed;
       if (o.viewer >= 0) equations_.mixed[at(o.viewer)] -= byTwist(eliminated, mixed);
-      if (point.host_viewer >= 0) equations_.mixed[at(point.host_viewer)] += byTwist(eliminated, mixed);
     }
     if (point.end_viewer > point.first_viewer) addToCameras(point, eliminated, o.viewer, by_sight, residual);
   }
@@ -105,29 +113,34 @@ class Linearizer {
 
   void addToCameras(const StructuredPoint& point, const EliminatedPoint& eliminated, int viewer,
                     const Matrix23d& by_sight, const Eigen::Vector2d& residual) {
-    const Vector6d first = byTwist(eliminated, by_sight.row(0)), second = byTwist(eliminated, by_sight.row(1));
-    Matrix6d block;
-    block.noalias() = first * first.transpose();
-    block.noalias() += second * second.transpose();
-    const Vector6d gradient = residual.x() * first + residual.y() * second;
-    if (point.host_viewer >= 0) {
-      equations_.host_block += block;
-      equations_.host_gradient += gradient;
+    const Eigen::Vector3d gradient = by_sight.transpose() * residual;
+    equations_.sight_gradient += gradient;
+    Matrix6d* block = nullptr;
+    if (viewer >= 0) {
+      const int unknown = unknownOf(point, viewer);
+      linearization_.camera_gradient.segment<6>(6 * unknown) -= byTwist(eliminated, gradient);
+      block = point.host_viewer < 0 ? &linearization_.diagonal[at(unknown)]
+                                    : &linearization_.pairs[at(blockOf(point, viewer, point.host_viewer))];
+    } else if (point.host_viewer >= 0) {
+      block = &linearization_.diagonal[at(unknownOf(point, point.host_viewer))];
+    } else {
+      return;  // another of the point's targets is free
     }
-    if (viewer < 0) return;
-    const int unknown = structure_.viewers[at(point.first_viewer + viewer)];
-    linearization_.diagonal[at(unknown)] += block;
-    linearization_.camera_gradient.segment<6>(6 * unknown) -= gradient;
-    if (point.host_viewer < 0) return;
-    const int pair = blockOfPair(std::max(viewer, point.host_viewer), std::min(viewer, point.host_viewer));
-    linearization_.blocks[at(structure_.blocks[at(point.first_block + pair)])] -= block;
+    addOuterProducts(byTwist(eliminated, by_sight.row(0)), byTwist(eliminated, by_sight.row(1)), *block);
   }
 
-  void addHost(const StructuredPoint& point) {
+  int unknownOf(const StructuredPoint& point, int viewer) const {
+    return structure_.viewers[at(point.first_viewer + viewer)];
+  }
+  int blockOf(const StructuredPoint& point, int viewer, int other) const {
+    return structure_.blocks[at(point.first_block + blockOfPair(std::max(viewer, other), std::min(viewer, other)))];
+  }
+
+  void addHost(const StructuredPoint& point, const EliminatedPoint& eliminated) {
     if (point.host_viewer < 0) return;
-    const int unknown = structure_.viewers[at(point.first_viewer + point.host_viewer)];
-    linearization_.diagonal[at(unknown)] += equations_.host_block;
-    linearization_.camera_gradient.segment<6>(6 * unknown) += equations_.host_gradient;
+    linearization_.camera_gradient.segment<6>(6 * unknownOf(point, point.host_viewer)) +=
+        byTwist(eliminated, equations_.sight_gradient);
+    equations_.mixed[at(point.host_viewer)] += byTwist(eliminated, equations_.sight_mixed);
   }
 
   void eliminate(const StructuredPoint& point, EliminatedPoint& eliminated) {
@@ -155,6 +168,31 @@ class Linearizer {
   PointEquations equations_;
 };
 
+void mirrorLowerTriangle(Matrix6d& block) {
+  for (int j = 1; j < 6; ++j) {
+    for (int i = 0; i < j; ++i) block(i, j) = block(j, i);
+  }
+}
+
+// What a pair's residuals say of its difference, on the diagonal of both and, negative, between them.
+void joinBlocks(const BundleStructure& structure, BundleLinearization& linearization) {
+  for (std::size_t b = 0; b < structure.places.size(); ++b) {
+    const BlockPlace place = structure.places[b];
+    if (place.row == place.column) continue;
+    Matrix6d& pair = linearization.pairs[b];
+    mirrorLowerTriangle(pair);
+    linearization.blocks[b] -= pair;
+    linearization.diagonal[at(place.row)] += pair;
+    linearization.diagonal[at(place.column)] += pair;
+  }
+  for (std::size_t b = 0; b < structure.places.size(); ++b) {
+    const BlockPlace place = structure.places[b];
+    if (place.row != place.column) continue;
+    mirrorLowerTriangle(linearization.diagonal[at(place.row)]);
+    linearization.blocks[b] += linearization.diagonal[at(place.row)];
+  }
+}
+
 }  // namespace
 
 double bundleCost(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber) {
@@ -181,10 +219,7 @@ void linearizeBundle(const Camera& camera, const BundleStructure& structure, con
   clear(structure, linearization);
   Linearizer linearizer(camera, structure, state, huber, damping, linearization);
   for (std::size_t i = 0; i < structure.points.size(); ++i) linearizer.addPoint(i);
-  for (std::size_t b = 0; b < structure.places.size(); ++b) {
-    const BlockPlace place = structure.places[b];
-    if (place.row == place.column) linearization.blocks[b] += linearization.diagonal[at(place.row)];
-  }
+  joinBlocks(structure, linearization);
   linearization.gradient += linearization.camera_gradient;
 }
 

@@ -36,6 +36,7 @@ struct BundleLinearization {
   double cost = 0;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Matrix6d> blocks;     // of the reduced system, twists; undamped but for the depths
+  std::vector<Matrix6d> pairs;      // of the squared difference of a host's and a target's twist, both free
   std::vector<Matrix6d> diagonal;   // of each unknown: its block as it was before the depths were eliminated
   Eigen::VectorXd gradient;         // reduced, 6 an unknown
   Eigen::VectorXd camera_gradient;  // before the depths were eliminated

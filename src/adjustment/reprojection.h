@@ -27,8 +27,9 @@ inline CameraFrame cameraFrame(const Pose& world_T_camera) {
 // True where a point (camera frame, any scale) can be seen: within 88.9 degrees of the optical axis for the pinhole
 // model, within 120 degrees for the fisheye. False for points at the centre and for NaN.
 inline bool inFront(const Camera& camera, const Eigen::Vector3d& point) {
-  const double least_cosine = camera.model == CameraModel::kannala_brandt ? -0.5 : 0.02;
-  return point.z() > least_cosine * point.norm();
+  if (camera.model == CameraModel::kannala_brandt) return point.z() > -0.5 * point.norm();
+  constexpr double kLeastCosine = 0.02;
+  return point.z() > 0 && point.z() * point.z() > kLeastCosine * kLeastCosine * point.squaredNorm();
 }
 
 // A pixel and what whitens errors of it.
