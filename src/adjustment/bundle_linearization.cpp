@@ -105,10 +105,17 @@ class Linearizer {
   }
 
   // From a gradient by the sight to that by a twist.
-  static Vector6d byTwist(const EliminatedPoint& point, const Eigen::Vector3d& by_sight) {
+  // Spelt out: as an expression of vectors it makes the processor wait for its own stores.
+  static Vector6d byTwist(const EliminatedPoint& point, double x, double y, double z) {
     Vector6d by_twist;
-    by_twist << point.inverse_depth * by_sight, point.lever.cross(by_sight);
+    by_twist.head<2>() = Eigen::Vector2d(point.inverse_depth * x, point.inverse_depth * y);
+    by_twist.segment<2>(2) = Eigen::Vector2d(point.inverse_depth * z, point.lever.y() * z - point.lever.z() * y);
+    by_twist.tail<2>() =
+        Eigen::Vector2d(point.lever.z() * x - point.lever.x() * z, point.lever.x() * y - point.lever.y() * x);
     return by_twist;
+  }
+  static Vector6d byTwist(const EliminatedPoint& point, const Eigen::Vector3d& by_sight) {
+    return byTwist(point, by_sight.x(), by_sight.y(), by_sight.z());
   }
 
   void addToCameras(const StructuredPoint& point, const EliminatedPoint& eliminated, int viewer,
@@ -126,7 +133,8 @@ class Linearizer {
     } else {
       return;  // another of the point's targets is free
     }
-    addOuterProducts(byTwist(eliminated, by_sight.row(0)), byTwist(eliminated, by_sight.row(1)), *block);
+    addOuterProducts(byTwist(eliminated, by_sight(0, 0), by_sight(0, 1), by_sight(0, 2)),
+                     byTwist(eliminated, by_sight(1, 0), by_sight(1, 1), by_sight(1, 2)), *block);
   }
 
   int unknownOf(const StructuredPoint& point, int viewer) const {

@@ -106,10 +106,9 @@ int minimizeBundle(const Camera& camera, const BundleProblem& problem, const Bun
       cost = new_cost;
       if (last || gain < kConverged * cost) break;
       const double factor = dampingFactor(gain, expected);
-      const bool as_hoped = factor < 0.5;
-      damping = as_hoped ? hoped_damping : std::min(kMostDamping, factor * damping);
+      damping = std::clamp(factor * damping, kLeastDamping, kMostDamping);
       refusal_factor = 2;
-      if (!as_hoped) linearizeAt(workspace.state, damping);
+      if (factor > 1) linearizeAt(workspace.state, damping);  // else the depths' damping does not matter
     } else {
       damping *= refusal_factor;
       refusal_factor *= 2;
