@@ -377,6 +377,61 @@ TEST(BundleAdjustment, ValuesThatAreNoNumbersTakeNoPart) {
   EXPECT_EQ(lost.points[0].inverse_depth, depth);
 }
 
+// What tells nothing of depth or place must end finite, or be refused with the problem as it was.
+TEST(BundleAdjustment, DegenerateProblemsEndFiniteOrAreRefused) {
+  Random random(17);
+  const BundleScene scene = makeBundleScene(random, {});
+  for (int what = 0; what < 5; ++what) {
+    BundleProblem problem = perturbedProblem(random, scene.truth, 0.02, 0.01);
+    bool nothing_to_adjust = false;
+    if (what == 0) {  // one keyframe alone
+      problem.cameras.resize(1);
+      problem.cameras[0].fixed = false;
+      for (BundlePoint& p : problem.points) p.host = 0;
+      for (BundleObservation& o : problem.observations) o.camera = 0;
+      nothing_to_adjust = true;
+    }
+    if (what == 1) {  // no parallax at all
+      for (BundleCamera& c : problem.cameras) c.world_T_camera.translation.setZero();
+    }
+    if (what == 2) {  // all at infinity
+      for (BundlePoint& p : problem.points) p.inverse_depth = 1e-300;
+    }
+    if (what == 3) {  // nothing fixed, one observation
+      for (BundleCamera& c : problem.cameras) c.fixed = false;
+      problem.observations.resize(1);
+    }
+    if (what == 4) {  // all in the same place of the image
+      for (BundleObservation& o : problem.observations) o.measurement.pixel.setConstant(100);
+      for (BundlePoint& p : problem.points) p.host_bearing = Eigen::Vector3d::UnitZ();
+    }
+    const BundleProblem before = problem;
+    const BundleResult result = adjustBundle(scene.camera, problem, manyIterations());
+    EXPECT_TRUE(result.usable || sameBytes(problem, before)) << what;
+    if (nothing_to_adjust) {
+      EXPECT_FALSE(result.usable);
+    }
+    EXPECT_LE(result.final_cost, result.initial_cost * (1 + 1e-9)) << what;
+    for (const BundleCamera& c : problem.cameras) {
+      EXPECT_TRUE(c.world_T_camera.translation.allFinite() && c.world_T_camera.rotation.coeffs().allFinite()) << what;
+    }
+    for (const BundlePoint& p : problem.points) EXPECT_TRUE(std::isfinite(p.inverse_depth) && p.inverse_depth > 0);
+    for (const double sigma : result.depth_sigmas) EXPECT_TRUE(std::isfinite(sigma));
+  }
+}
+
+TEST(BundleAdjustment, InterruptedLeavesTheProblem) {
+  Random random(18);
+  const BundleScene scene = makeBundleScene(random, {});
+  BundleProblem problem = perturbedProblem(random, scene.truth, 0.02, 0.01);
+  const BundleProblem before = problem;
+  const std::atomic<bool> interrupted{true};
+  BundleOptions options;
+  options.interrupted = &interrupted;
+  EXPECT_FALSE(adjustBundle(scene.camera, problem, options).usable);
+  EXPECT_TRUE(sameBytes(problem, before));
+}
+
 TEST(BundleAdjustment, PointsBehindTheCameraNeitherPullNorBlock) {
   Random random(15);
   const BundleScene scene = makeBundleScene(random, {});
