@@ -18,13 +18,6 @@ Pose cameraOnBody(const RobotSetup& robot) {
 
 bool isKnown(const Matrix6d& covariance) { return covariance.allFinite() && covariance.diagonal().minCoeff() > 0; }
 
-Pose motionOfCamera(const MeasuredPose& before, const MeasuredPose& now) {
-  if (before.reference >= 0 && before.reference == now.reference) {
-    return before.reference_T_camera.inverse() * now.reference_T_camera;
-  }
-  return before.world_T_camera.inverse() * now.world_T_camera;
-}
-
 }  // namespace
 
 bool hasUsablePose(const FrameResult& result) {
@@ -69,6 +62,13 @@ Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& rob
   return carriedCovariance(covariance, cameraOnBody(robot).inverse());
 }
 
+Pose cameraMotion(const MeasuredPose& before, const MeasuredPose& now) {
+  if (before.reference >= 0 && before.reference == now.reference) {
+    return before.reference_T_camera.inverse() * now.reference_T_camera;
+  }
+  return before.world_T_camera.inverse() * now.world_T_camera;
+}
+
 std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredPose& now, const RobotSetup& robot) {
   const double seconds = 1e-9 * static_cast<double>(now.time_ns - before.time_ns);
   if (!(seconds > 0 && seconds <= longest_motion_s)) return std::nullopt;
@@ -76,7 +76,7 @@ std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredP
   BodyMotion motion;
   motion.from_ns = before.time_ns;
   motion.seconds = seconds;
-  motion.before_T_now = body_T_camera * scaled(motionOfCamera(before, now), robot.scale) * body_T_camera.inverse();
+  motion.before_T_now = body_T_camera * scaled(cameraMotion(before, now), robot.scale) * body_T_camera.inverse();
   if (isKnown(before.covariance_camera) && isKnown(now.covariance_camera)) {
     motion.covariance = carriedCovariance(bodyCovariance(before.covariance_camera, robot), motion.before_T_now) +
                         bodyCovariance(now.covariance_camera, robot);

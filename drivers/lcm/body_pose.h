@@ -58,8 +58,11 @@ Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot);
 // camera's is not finite or claims certainty.
 Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& robot);
 
-// None where the time between is not over 0 or over longest_motion_s. Through the keyframe that both poses hang on,
-// where there is one, so that a correction of the map in between is no motion.
+// before_T_now [map units]: through the keyframe that both hang on, where there is one.
+Pose cameraMotion(const MeasuredPose& before, const MeasuredPose& now);
+
+// None where the time between is not over 0 or over longest_motion_s. By cameraMotion(), so that a correction of
+// the map in between is no motion where the keyframe is the same.
 std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredPose& now, const RobotSetup& robot);
 
 }  // namespace edgeslam

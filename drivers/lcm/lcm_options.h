@@ -22,6 +22,8 @@ struct LcmOptions {
   std::string map_channel = "SLAM_MAP";
   std::string command_channel = "SLAM_COMMAND";
   std::string answer_channel = "SLAM_ANSWER";
+  // of the robot's wheel odometry (pose_t), which is listened to; empty: none
+  std::string wheels_channel;
 };
 
 struct MulticastGroup {

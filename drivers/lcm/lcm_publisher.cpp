@@ -25,6 +25,9 @@ LcmPublisher::LcmPublisher(const LcmOptions& options, const Pose& body_T_camera)
   robot_.body_T_camera = body_T_camera;
   if (canReceive(options_.url)) {
     receiver_ = std::make_unique<CommandReceiver>(options_.url, options_.command_channel);
+    if (!options_.wheels_channel.empty()) {
+      wheels_ = std::make_unique<OdometryReceiver>(options_.url, options_.wheels_channel);
+    }
   }
 }
 
@@ -74,6 +77,8 @@ void LcmPublisher::answer(const Command& command, bool accepted, const std::stri
   sender_.send(options_.answer_channel, commandAnswer(command, accepted, message, monotonicUtime()));
 }
 
+std::optional<OdometryPose> LcmPublisher::nextOdometry() { return wheels_ ? wheels_->next() : std::nullopt; }
+
 LcmCounts LcmPublisher::counts() const {
   return {sender_.sent(), sender_.notSent(), commands_, receiver_ ? receiver_->ignored() : 0};
 }
@@ -87,7 +92,8 @@ void LcmPublisher::sendMapParts() {
 void LcmPublisher::rejoinAfterComeback() {
   if (sender_.comebacks() == comebacks_) return;
   comebacks_ = sender_.comebacks();
-  if (receiver_) receiver_->joinAnew();
+  if (receiver_) receiver_->listener().joinAnew();
+  if (wheels_) wheels_->listener().joinAnew();
 }
 
 }  // namespace edgeslam

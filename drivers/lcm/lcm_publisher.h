@@ -11,6 +11,7 @@
 #include "drivers/lcm/lcm_options.h"
 #include "drivers/lcm/lcm_sender.h"
 #include "drivers/lcm/map_messages.h"
+#include "drivers/lcm/odometry_receiver.h"
 #include "drivers/lcm/status_message.h"
 
 namespace edgeslam {
@@ -40,12 +41,17 @@ class LcmPublisher {
   // To be called once for every command.
   void answer(const Command& command, bool accepted, const std::string& message);
 
+  // The robot's wheel odometry, where LcmOptions name a channel for it: the oldest that was not handed out yet.
+  std::optional<OdometryPose> nextOdometry();
+  // Messages on its channel that were no pose of a body, or too many at once.
+  std::int64_t odometryIgnored() const { return wheels_ ? wheels_->ignored() : 0; }
+
   // As of now; messages that wait to be sent are not counted yet.
   LcmCounts counts() const;
   // Why messages do not go out at present, in one line with what to do; empty where they do.
   std::string problem() const { return sender_.problem(); }
   // True from when commands are heard.
-  bool listening() const { return receiver_ && receiver_->listening(); }
+  bool listening() const { return receiver_ && receiver_->listener().listening(); }
 
  private:
   void sendMapParts();
@@ -55,6 +61,7 @@ class LcmPublisher {
   RobotSetup robot_;
   LcmSender sender_;
   std::unique_ptr<CommandReceiver> receiver_;  // null where the URL cannot receive
+  std::unique_ptr<OdometryReceiver> wheels_;   // likewise, and where no channel is named
   std::optional<MeasuredPose> before_;
   FrameStatistics statistics_;
   std::int64_t states_ = 0, statuses_ = 0, commands_ = 0, comebacks_ = 0;

@@ -47,6 +47,7 @@ status_t statusMessage(const PublisherStatus& status, const FrameFigures& frames
   const bool has_camera = status.camera_problem.empty();
   message.state = stateNumber(has_camera ? frames.state : TrackingState::lost);
   message.reason = messageText(has_camera ? frames.reason : status.camera_problem);
+  message.scale_reason = messageText(status.scale_problem);
   message.version = messageText(status.version);
   message.frames_per_second = finite(frames.frames_per_second);
   message.poses_per_second = finite(frames.poses_per_second);

@@ -26,6 +26,7 @@ struct PublisherStatus {
   int points = -1;
   bool recording = false;
   std::string camera_problem;  // why no frames come: the state is then lost, and this its reason; or empty
+  std::string scale_problem;   // why the scale is not known, or not renewed; or empty
 };
 
 // What became of messages, since the start.

@@ -1,6 +1,6 @@
 // P19, eq. 1: bundle adjustment of keyframe poses and inverse depths. A point is one unknown: its inverse distance rho
 // along the fixed unit bearing in its host camera, X_host = bearing / rho. Residuals are whitened across and along the
-// edge, with analytic Jacobians; Ceres minimises them with the points eliminated first (1x1 blocks).
+// edge; Levenberg-Marquardt's method minimises them with the depths eliminated first, each a division.
 #pragma once
 
 #include <atomic>
@@ -49,7 +49,7 @@ struct BundleOptions {
 };
 
 struct BundleResult {
-  // Something was adjusted, Ceres found a usable solution and all of it is finite. Else the problem is as it was: also
+  // Something was adjusted, a step could be computed and all of it is finite. Else the problem is as it was: also
   // where an index is out of range or a camera's pose not finite.
   bool usable = false;
   // Whitened residual norm of each observation afterwards; infinity behind the camera, and for what takes no part:

@@ -27,8 +27,9 @@ inline CameraFrame cameraFrame(const Pose& world_T_camera) {
 // True where a point (camera frame, any scale) can be seen: within 88.9 degrees of the optical axis for the pinhole
 // model, within 120 degrees for the fisheye. False for points at the centre and for NaN.
 inline bool inFront(const Camera& camera, const Eigen::Vector3d& point) {
-  const double least_cosine = camera.model == CameraModel::kannala_brandt ? -0.5 : 0.02;
-  return point.z() > least_cosine * point.norm();
+  if (camera.model == CameraModel::kannala_brandt) return point.z() > -0.5 * point.norm();
+  constexpr double kLeastCosine = 0.02;
+  return point.z() > 0 && point.z() * point.z() > kLeastCosine * kLeastCosine * point.squaredNorm();
 }
 
 // A pixel and what whitens errors of it.
@@ -64,30 +65,22 @@ inline bool poseResidual(const Camera& camera, const WhitenedPixel& measured, co
   return true;
 }
 
-struct BundleDerivatives {
-  Matrix26d by_host;
-  Matrix26d by_target;
-  Eigen::Vector2d by_inverse_depth;
-};
+// From a target camera's centre to the point at `inverse_depth` along the unit `host_bearing` of a host camera: world
+// axes, divided by the point's depth, so that infinitely far points are nothing special.
+inline Eigen::Vector3d sight(const CameraFrame& host, const CameraFrame& target, const Eigen::Vector3d& host_bearing,
+                             double inverse_depth) {
+  return host.world_R_camera * host_bearing + inverse_depth * (host.centre - target.centre);
+}
 
-// Residual in a target camera of the point at `inverse_depth` along the unit `host_bearing`, and its derivatives. Works
-// on the point divided by its depth, R_th f + rho t_th, so that infinitely far points are nothing special.
-inline bool bundleResidual(const Camera& camera, const WhitenedPixel& measured, const CameraFrame& host,
-                           const CameraFrame& target, const Eigen::Vector3d& host_bearing, double inverse_depth,
-                           Eigen::Vector2d& residual, BundleDerivatives* derivatives) {
-  const Eigen::Vector3d baseline = target.world_R_camera.transpose() * (host.centre - target.centre);
-  const Eigen::Vector3d ray = host.world_R_camera * host_bearing;
-  const Eigen::Vector3d seen = target.world_R_camera.transpose() * ray + inverse_depth * baseline;
-  if (!derivatives) return pointResidual(camera, measured, seen, residual, nullptr);
+// Residual of a point seen along `sight` (world axes, any length), and its derivative by the sight. All that a bundle
+// adjustment moves acts through the sight: what a residual changes by is `by_sight` times what the sight does.
+inline bool sightResidual(const Camera& camera, const WhitenedPixel& measured, const CameraFrame& target,
+                          const Eigen::Vector3d& sight, Eigen::Vector2d& residual, Matrix23d* by_sight) {
+  const Eigen::Vector3d seen = target.world_R_camera.transpose() * sight;
+  if (!by_sight) return pointResidual(camera, measured, seen, residual, nullptr);
   Matrix23d by_point;
   if (!pointResidual(camera, measured, seen, residual, &by_point)) return false;
-  const Matrix23d by_world = by_point * target.world_R_camera.transpose();
-  const Matrix23d by_host_point = by_world * host.world_R_camera;
-  derivatives->by_host.leftCols<3>() = inverse_depth * by_host_point;
-  derivatives->by_host.rightCols<3>().noalias() = -by_host_point * skew(host_bearing);
-  derivatives->by_target.leftCols<3>() = -inverse_depth * by_point;
-  derivatives->by_target.rightCols<3>().noalias() = by_point * skew(seen);
-  derivatives->by_inverse_depth.noalias() = by_point * baseline;
+  by_sight->noalias() = by_point * target.world_R_camera.transpose();
   return true;
 }
 

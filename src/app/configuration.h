@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/scale_from_distance.h"
+#include "app/scale_options.h"
 #include "drivers/frame_capture/camera_options.h"
 #include "drivers/lcm/lcm_options.h"
 #include "edgeslam/input_error.h"

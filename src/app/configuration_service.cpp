@@ -58,6 +58,22 @@ std::vector<ServiceKey> keysOf(Configuration& configuration) {
       number("recording.kept_free_megabytes", &space.kept_free_megabytes, "MB", 0, 1e9,
              "left free for others; at less the recording ends"),
 
+      TextKey{"scale.source", &scale.source,
+              "none: metres by command only; camera_height: over the ground; odometry: of the wheels, by LCM", ""},
+      number("scale.camera_height_m", &scale.height.camera_height_m, "m", 0, 100,
+             "of the camera's centre over the ground; 0: not given"),
+      number("scale.camera_height_sigma_m", &scale.height.sigma_m, "m", 0, 10, "standard deviation of it"),
+      number("scale.ground_tilt_deg", &scale.height.largest_tilt_deg, "deg", 1, 45,
+             "largest angle of the ground's normal to the body's z axis (camera.body_T_camera)"),
+      TextKey{"scale.odometry_channel", &scale.odometry.channel,
+              "of bot_core.pose_t: the body's pose in metres, time stamps of CLOCK_MONOTONIC as the camera's",
+              "ODOMETRY"},
+      number("scale.odometry_sigma", &scale.odometry.sigma, "", 0, 1,
+             "standard deviation of the odometry's own scale (size of the wheels), as a share of it"),
+      number("scale.odometry_sigma_per_metre", &scale.odometry.sigma_per_metre, "m", 0.001, 1,
+             "of a way of 1 m, by slip; grows with the root of the way"),
+      number("scale.odometry_window_m", &scale.odometry.window_m, "m", 0.05, 100,
+             "way of the body from one comparison with the camera to the next"),
       number("scale.largest_sigma", &scale.largest_sigma, "", 0.001, 1,
              "a scale is refused where its standard deviation is over this share of it"),
       number("scale.metres_per_unit", &scale.metres_per_unit, "m", 0, 1e6,
@@ -109,11 +125,29 @@ std::string lcmProblem(const LcmOptions& options) {
   return "";
 }
 
+// A source that lacks what it needs.
+std::string scaleProblem(const ServiceOptions& options) {
+  const ScaleOptions& scale = options.scale;
+  if (scale.source != "none" && scale.source != "camera_height" && scale.source != "odometry") {
+    return "scale.source: '" + scale.source + "' is no source; expected none, camera_height or odometry";
+  }
+  if (scale.source == "camera_height" && scale.height.camera_height_m <= 0) {
+    return "scale.source: camera_height needs scale.camera_height_m";
+  }
+  if (scale.source != "odometry") return "";
+  if (scale.odometry.channel.empty()) return "scale.source: odometry needs scale.odometry_channel";
+  LcmOptions lcm = options.lcm;
+  if (!lcmProblem(lcm).empty()) return "";  // told of the section `lcm:`
+  lcm.wheels_channel = scale.odometry.channel;
+  const std::string wrong = lcmProblem(lcm);
+  return wrong.empty() ? "" : "scale.odometry_channel: " + wrong;
+}
+
 const char* introduction(const std::string& section) {
   if (section == "lcm") return "Messages to the robot's controller";
   if (section == "map") return "The map on the disk, of `edgeslam run`";
   if (section == "recording") return "The flight recorder of live runs";
-  return "Metres a map unit, set by command from a known distance";
+  return "Metres a map unit: by command from a known distance, or found by itself";
 }
 
 }  // namespace
@@ -139,9 +173,13 @@ void readServiceSection(const std::string& section, const YAML::Node& node, Conf
     if (!value) continue;
     if (const std::string wrong = read(key, value); !wrong.empty()) tell(value.Mark().line, path + ": " + wrong);
   }
-  if (section != "lcm") return;
-  if (const std::string wrong = lcmProblem(configuration.service.lcm); !wrong.empty())
-    tell(node.Mark().line, "lcm: " + wrong);
+  if (section == "lcm") {
+    if (const std::string wrong = lcmProblem(configuration.service.lcm); !wrong.empty())
+      tell(node.Mark().line, "lcm: " + wrong);
+  }
+  if (section == "scale") {
+    if (const std::string wrong = scaleProblem(configuration.service); !wrong.empty()) tell(node.Mark().line, wrong);
+  }
 }
 
 std::string formatServiceSections(const Configuration& configuration) {

@@ -82,7 +82,8 @@ std::string describe(const status_t& status) {
              status.frames_per_second, status.poses_per_second, status.latency_p50_ms, status.latency_p99_ms,
              static_cast<long long>(status.frames_dropped), status.keyframes, status.points, status.loops,
              1e-6 * static_cast<double>(status.memory_bytes), status.temperature_c,
-             static_cast<long long>(status.messages_not_sent));
+             static_cast<long long>(status.messages_not_sent)) +
+         (status.scale_reason.empty() ? "" : ", scale: " + messageText(status.scale_reason));
 }
 
 std::string describe(const map_part_t& map) {

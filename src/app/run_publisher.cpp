@@ -1,6 +1,5 @@
 #include "app/run_publisher.h"
 
-#include <cstdio>
 #include <utility>
 
 namespace edgeslam {
@@ -30,11 +29,16 @@ PublishingSetup publishingSetup(const Configuration& configuration, const Camera
   setup.body_T_camera = configuration.body_T_camera;
   setup.camera = camera;
   setup.scale = service.scale;
+  if (service.scale.source == "odometry") setup.lcm.wheels_channel = service.scale.odometry.channel;
   return setup;
 }
 
 RunPublisher::RunPublisher(const PublishingSetup& setup, CaptureLink& link, EventLog& log)
-    : setup_(setup), link_(link), log_(log), publisher_(setup.lcm, setup.body_T_camera) {}
+    : setup_(setup),
+      link_(link),
+      log_(log),
+      publisher_(setup.lcm, setup.body_T_camera),
+      search_(setup.scale, setup.body_T_camera) {}
 
 void RunPublisher::begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder, RunStart start) {
   run_ = &run;
@@ -57,7 +61,7 @@ void RunPublisher::end() {
   const PublisherStatus last = status();
   publisher_.status(last);
   tellChanges(last);
-  map_wanted_ = false;
+  map_wanted_ = ground_wanted_ = false;
   earlier_runs_ = countsOverRuns();
   run_ = nullptr;
 }
@@ -76,24 +80,18 @@ void RunPublisher::frame(const FrameResult& result, const std::string& problem) 
   publisher_.frame(result);
   service_.alive(Clock::now());
   history_.add(result);
+  takeOdometry();
+  search_.add(result);
   if (!problem.empty()) ++unreadable_;
   state_ = result.state;
   reason_ = result.reason;
-}
-
-// The scale was that of a map that is no more.
-void RunPublisher::forgetScale() {
-  history_.clear();
-  if (scale_ != ScaleKind::unknown) log_.tell("the scale is unknown again: another map was begun");
-  scale_ = ScaleKind::unknown;
-  publisher_.setScale({});
 }
 
 void RunPublisher::report(const MappingReport& report) {
   if (report.found) ++(report.found->how == TrackingState::recovered ? recoveries_ : relocalisations_);
   if (report.loop) {
     ++loops_;
-    history_.clear();
+    mapWasCorrected();
   }
   if (report.found || report.loop) {
     for (const std::string& event : report.events) {
@@ -115,11 +113,13 @@ void RunPublisher::tick() {
     waits_ = waits;
     service_.alive(now);
   }
+  takeOdometry();
   if (now >= next_second_) eachSecond(now);
 }
 
 void RunPublisher::eachSecond(Clock::time_point now) {
   next_second_ = std::max(next_second_ + std::chrono::seconds(1), now);
+  followScale(now);
   const PublisherStatus current = status();
   publisher_.status(current);
   service_.status(serviceText(current, state_));
@@ -145,6 +145,7 @@ PublisherStatus RunPublisher::status() const {
   status.points = static_cast<int>(counts.points);
   status.recording = isRecording();
   status.camera_problem = link_.cameraProblem();
+  status.scale_problem = scaleProblem();
   return status;
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "app/event_log.h"
 #include "app/flight_recorder.h"
 #include "app/scale_from_distance.h"
+#include "app/scale_search.h"
 #include "app/service_notification.h"
 #include "drivers/lcm/lcm_publisher.h"
 #include "pipeline/live_run.h"
@@ -66,7 +68,6 @@ class RunPublisher {
   };
 
   // run_publisher.cpp: frames and status.
-  void forgetScale();
   void eachSecond(Clock::time_point now);
   void tellChanges(const PublisherStatus& status);
   LiveCounts countsOverRuns() const;
@@ -74,7 +75,6 @@ class RunPublisher {
 
   // run_publisher_commands.cpp: commands and map.
   void carryOut(const Command& command);
-  void setScale(const Command& command);
   void askToSaveMap(const MapSaveWish& wish);
   void stopRecording(const Command& command);
   void passToCapture(const Command& command);
@@ -83,12 +83,23 @@ class RunPublisher {
   void saveMapInBackground(const MapPointer& map);
   void answerSaves(const std::vector<MapSaveWish>& wishes, bool saved, const std::string& message);
 
+  // run_publisher_scale.cpp.
+  void forgetScale();
+  void mapWasCorrected();
+  void setScale(const Command& command);
+  void takeOdometry();
+  void followScale(Clock::time_point now);
+  void lookForGround(const MapPointer& map);
+  std::string scaleProblem() const;
+  void tellScaleProblem();
+
   PublishingSetup setup_;
   CaptureLink& link_;
   EventLog& log_;
   ServiceNotification service_;
   LcmPublisher publisher_;
   PositionHistory history_;
+  ScaleSearch search_;
   BackgroundWork work_;
   LiveRun* run_ = nullptr;
   std::shared_ptr<FlightRecorder> recorder_;
@@ -105,6 +116,11 @@ class RunPublisher {
   // What the log was told last.
   std::string told_state_, told_lcm_problem_;
   bool told_recording_ = false;
+
+  bool ground_wanted_ = false;                 // of the map that was asked for
+  KeyframeId ground_keyframe_ = -1;            // the latest of the map in which it was looked for
+  std::int64_t ground_looks_void_ = 0;         // counts what makes looks under way worthless
+  std::set<std::string> told_scale_problems_;  // without their numbers
 
   bool map_wanted_ = false;  // for SLAM_MAP
   std::vector<MapSaveWish> save_wishes_;

@@ -57,19 +57,6 @@ void RunPublisher::passToCapture(const Command& command) {
   }
 }
 
-void RunPublisher::setScale(const Command& command) {
-  const ScaleResult result =
-      scaleFromDistance(history_, command.from_utime, command.to_utime, command.distance_m, setup_.scale);
-  if (!result.problem.empty()) return publisher_.answer(command, false, result.problem);
-  scale_ = result.scale.kind;
-  publisher_.setScale(result.scale);
-  char text[120];
-  std::snprintf(text, sizeof(text), "the scale is %.6g metres a map unit, standard deviation %.2g %%",
-                result.scale.metres_per_unit, 100 * result.scale.sigma);
-  log_.tell(text);
-  publisher_.answer(command, true, text);
-}
-
 void RunPublisher::stopRecording(const Command& command) {
   if (!isRecording()) return publisher_.answer(command, false, "there is no recording");
   told_recording_ = false;  // it is told here
@@ -109,6 +96,7 @@ void RunPublisher::mapCame(const MapPointer& map) {
       };
     });
   }
+  if (std::exchange(ground_wanted_, false)) lookForGround(map);
   if (!save_wishes_.empty()) saveMapInBackground(map);
 }
 

@@ -5,17 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "app/scale_options.h"
 #include "drivers/lcm/body_pose.h"
 #include "pipeline/frame_result.h"
 
 namespace edgeslam {
-
-struct ScaleOptions {
-  double largest_sigma = 0.1;  // a scale that is known worse than this share is refused
-  // Of the map that is gone on with at the start; 0: not known.
-  double metres_per_unit = 0;
-  double sigma = 0.05;  // standard deviation of that scale over the scale
-};
 
 // Where the camera was at the latest frames with a measured pose.
 class PositionHistory {

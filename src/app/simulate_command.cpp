@@ -57,7 +57,7 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<SimulateOptions>();
   SimulationOptions& simulation = options->simulation;
   CLI::App* command = app.add_subcommand("simulate", "Make a sequence with exact ground truth");
-  command->add_option("SCENE", options->scene, "panels, panels_textured, room or corridor")->required();
+  command->add_option("SCENE", options->scene, "panels, panels_textured, room, corridor or corridor_tiled")->required();
   command->add_option("--output", options->output, "Folder to write, in TUM layout")->required();
   command->add_option("--frames", simulation.frames,
                       "Number of frames; 0: 300, for the corridor a lap and a little more");

@@ -178,7 +178,7 @@ CameraMotion makeCameraMotion(SceneKind scene, double speed, std::uint64_t seed,
   CameraMotion motion;
   motion.scene = scene;
   motion.speed = speed;
-  const bool on_wheels = scene == SceneKind::corridor;
+  const bool on_wheels = isCorridor(scene);
   for (std::size_t i = 0; i < 6; ++i) {
     const bool rotation = i >= 3;
     const double hand = rotation ? 0.030 : 0.030, wheels = rotation ? 0.004 : 0.0;
@@ -190,7 +190,8 @@ CameraMotion makeCameraMotion(SceneKind scene, double speed, std::uint64_t seed,
     case SceneKind::room:
       motion.path_phase = -2.2 + 0.3 * uniform(generator);
       break;
-    case SceneKind::corridor: {
+    case SceneKind::corridor:
+    case SceneKind::corridor_tiled: {
       const CorridorPath path = corridorPath();
       const double until_s = std::max(duration_s * speed + 1, path.lap() / kTurnSpeed_m_s);
       double way = 0;
@@ -215,6 +216,7 @@ Pose poseAt(const CameraMotion& motion, double time_s) {
       pose = roomPath(motion.path_phase + 2 * kPi * path_time / kRoomPeriod_s);
       break;
     case SceneKind::corridor:
+    case SceneKind::corridor_tiled:
       pose = corridorPose(wayGone(motion.corridor_distances_m, path_time));
       break;
     default:
@@ -234,7 +236,8 @@ double lapTime(const CameraMotion& motion) {
   switch (motion.scene) {
     case SceneKind::room:
       return kRoomPeriod_s / motion.speed;
-    case SceneKind::corridor: {
+    case SceneKind::corridor:
+    case SceneKind::corridor_tiled: {
       const auto& ways = motion.corridor_distances_m;
       const auto end = std::lower_bound(ways.begin(), ways.end(), corridorPath().lap());
       return kCorridorStep_s * static_cast<double>(end - ways.begin()) / motion.speed;

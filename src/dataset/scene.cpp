@@ -110,7 +110,7 @@ Scene makeRoom(std::uint64_t seed) {
   return scene;
 }
 
-Scene makeCorridor(std::uint64_t seed) {
+Scene makeCorridor(bool tiled, std::uint64_t seed) {
   const CorridorPlan plan;
   constexpr double height = 2.5;
   const double inner_length = plan.length - 2 * plan.corridor_width, inner_width = plan.width - 2 * plan.corridor_width;
@@ -118,6 +118,7 @@ Scene makeCorridor(std::uint64_t seed) {
   Scene scene;
   scene.ambient = 0.45;
   const auto outer = addRoomShell(scene, {0, 0, 0}, {plan.length, plan.width, height}, 0.36, 0.70, 0.7);
+  if (tiled) scene.rectangles.front().texture = addTexture(scene, drawTiles(1440, 1080, 90, seed + 3));
   addBox(scene, {inner_x, inner_y, 0}, inner_length * Vector3d::UnitX(), inner_width * Vector3d::UnitY(),
          height * Vector3d::UnitZ(), 0.70);
   const std::vector<SceneWall> inner = {
@@ -166,15 +167,18 @@ const char* sceneName(SceneKind kind) {
       return "room";
     case SceneKind::corridor:
       return "corridor";
+    case SceneKind::corridor_tiled:
+      return "corridor_tiled";
   }
   return "unknown";
 }
 
 SceneKind sceneKindOfName(const std::string& name) {
-  for (const SceneKind kind : {SceneKind::panels, SceneKind::panels_textured, SceneKind::room, SceneKind::corridor}) {
+  for (const SceneKind kind : {SceneKind::panels, SceneKind::panels_textured, SceneKind::room, SceneKind::corridor,
+                               SceneKind::corridor_tiled}) {
     if (name == sceneName(kind)) return kind;
   }
-  throw InputError("unknown scene '" + name + "': expected panels, panels_textured, room or corridor");
+  throw InputError("unknown scene '" + name + "': expected panels, panels_textured, room, corridor or corridor_tiled");
 }
 
 Scene makeScene(SceneKind kind, std::uint64_t seed) {
@@ -182,7 +186,8 @@ Scene makeScene(SceneKind kind, std::uint64_t seed) {
     case SceneKind::room:
       return makeRoom(seed);
     case SceneKind::corridor:
-      return makeCorridor(seed);
+    case SceneKind::corridor_tiled:
+      return makeCorridor(kind == SceneKind::corridor_tiled, seed);
     default:
       return makePanels(kind == SceneKind::panels_textured, seed);
   }

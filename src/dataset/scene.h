@@ -14,11 +14,14 @@ enum class SceneKind {
   panels,           // bare white panels, folded zig-zag, before a darker wall (TUM's structure_notexture)
   panels_textured,  // the same with posters (TUM's structure_texture)
   room,             // plain painted room: skirting, door, window, table, boxes
-  corridor          // rectangular loop of plain corridors with doors
+  corridor,         // rectangular loop of plain corridors with doors
+  corridor_tiled    // the same with a floor of tiles
 };
 
-// "panels", "panels_textured", "room", "corridor".
+// "panels", "panels_textured", "room", "corridor", "corridor_tiled".
 const char* sceneName(SceneKind kind);
+
+inline bool isCorridor(SceneKind kind) { return kind == SceneKind::corridor || kind == SceneKind::corridor_tiled; }
 
 // Throws InputError, with the names that exist, for any other name.
 SceneKind sceneKindOfName(const std::string& name);

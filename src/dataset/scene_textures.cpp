@@ -143,6 +143,19 @@ SceneTexture drawCarpet(int width, int height, double contrast, std::uint64_t se
   return withLevels(carpet);
 }
 
+SceneTexture drawTiles(int width, int height, int tile, std::uint64_t seed) {
+  Dice dice(seed);
+  const int joint = std::max(1, tile / 40);
+  cv::Mat floor(height, width, CV_8U, cv::Scalar(90));
+  for (int y = 0; y < height; y += tile) {
+    for (int x = 0; x < width; x += tile) {
+      const cv::Rect inside(x + joint, y + joint, tile - 2 * joint, tile - 2 * joint);
+      floor(inside & cv::Rect(0, 0, width, height)).setTo(cv::Scalar(dice.between(185, 245)));
+    }
+  }
+  return withLevels(floor);
+}
+
 SceneTexture drawDoorLeaf(int width, int height, std::uint64_t seed) {
   Dice dice(seed);
   cv::Mat leaf(height, width, CV_8U);

@@ -59,7 +59,7 @@ Camera makeCamera(const SimulationOptions& options) {
     camera.fx = 330 * scale;
     camera.fy = 330.4 * scale;
     camera.distortion = {-0.012, 0.009, -0.006, 0.0012, 0};
-  } else if (options.scene == SceneKind::corridor) {
+  } else if (isCorridor(options.scene)) {
     camera.fx = 421 * scale;
     camera.fy = 421.6 * scale;
     camera.distortion = {-0.245, 0.055, 0.0004, -0.0006, 0};
@@ -142,7 +142,7 @@ SimulatedSequence makeSequence(const SimulationOptions& options) {
   int& frames = sequence.options.frames;
   if (frames == 0) {
     frames = kDefaultFrames;
-    if (options.scene == SceneKind::corridor) {
+    if (isCorridor(options.scene)) {
       const double lap_s = lapTime(makeCameraMotion(options.scene, options.speed, options.seed, 0));
       frames = static_cast<int>(std::ceil((lap_s + 1.5 / options.speed) * options.fps));
     }

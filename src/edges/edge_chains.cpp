@@ -1,5 +1,7 @@
 #include "edges/edge_chains.h"
 
+#include <cstddef>
+
 #include "edges/edge_neighbours.h"
 
 namespace edgeslam {
@@ -7,26 +9,18 @@ namespace {
 
 constexpr int kTaken = kNotNamed;  // in place of the neighbour behind: the point is in a chain, or in none at all
 
-// Of the two ways of a choice only those stay that are mutual.
-void keepMutual(std::vector<int>& ahead, std::vector<int>& behind) {
-  for (size_t i = 0; i < ahead.size(); ++i) {
-    const int next = ahead[i];
-    if (next >= 0 && behind[static_cast<size_t>(next)] != static_cast<int>(i)) ahead[i] = -1;
-  }
-  for (size_t i = 0; i < behind.size(); ++i) {
-    const int previous = behind[i];
-    if (previous >= 0 && ahead[static_cast<size_t>(previous)] != static_cast<int>(i)) behind[i] = -1;
-  }
-}
-
 // Appends the chain that starts with the point `start` to `edges`.
 void takeChain(size_t start, int shortest_chain, EdgeWorkspace& workspace, EdgeMap& edges) {
+  const std::vector<EdgePixel>& points = workspace.pixels.points;
+  auto* entries = edges.index.ptr<int>(0);
+  const auto row_step = static_cast<std::ptrdiff_t>(edges.index.step1());
+  const auto entryOf = [&](const EdgePixel& point) -> int& { return entries[point.cell.y * row_step + point.cell.x]; };
   const size_t first = edges.points.size();
   auto at = static_cast<int>(start);
   do {
-    const EdgePixel& source = workspace.pixels.points[static_cast<size_t>(at)];
+    const EdgePixel& source = points[static_cast<size_t>(at)];
     const auto here = static_cast<int>(edges.points.size());
-    edges.index.at<int>(source.cell) = here;
+    entryOf(source) = here;
     edges.points.push_back({source.pixel, source.normal, source.gradient, edges.chain_count, here - 1, here + 1});
     workspace.behind[static_cast<size_t>(at)] = kTaken;
     at = workspace.ahead[static_cast<size_t>(at)];
@@ -35,7 +29,7 @@ void takeChain(size_t start, int shortest_chain, EdgeWorkspace& workspace, EdgeM
   if (static_cast<int>(end - first) < shortest_chain) {
     at = static_cast<int>(start);
     for (size_t i = first; i < end; ++i) {
-      edges.index.at<int>(workspace.pixels.points[static_cast<size_t>(at)].cell) = -1;
+      entryOf(points[static_cast<size_t>(at)]) = -1;
       at = workspace.ahead[static_cast<size_t>(at)];
     }
     edges.points.resize(first);

@@ -27,6 +27,8 @@ void chooseByVectors(const std::vector<EdgePixel>& points, const cv::Mat& index,
   chooseNeighboursReference(points, index, ahead, behind);
 }
 
+void keepMutualByVectors(std::vector<int>& ahead, std::vector<int>& behind) { keepMutualReference(ahead, behind); }
+
 #else
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -70,12 +72,14 @@ void findOctants(size_t count, Batch& batch) {
   }
 }
 
-void lookUp(const std::vector<EdgePixel>& points, const cv::Mat& index, size_t first, size_t count, Batch& batch) {
+// To the neighbours around an entry of the index, around twice and more, so that a turn needs no bounds.
+using Steps = std::array<std::ptrdiff_t, 19>;
+
+void lookUp(const std::vector<EdgePixel>& points, const cv::Mat& index, const Steps& steps, size_t first, size_t count,
+            Batch& batch) {
   static_assert(offsetof(EdgePixel, pixel) == 0 && offsetof(EdgePixel, normal) == 2 * sizeof(float));
   constexpr std::array<size_t, kTurns> kTurn = {0, 1, 7};
   constexpr size_t kBytes = kPlace * sizeof(float);
-  std::array<std::ptrdiff_t, 19> steps;  // around twice and more, so that a turn needs no bounds
-  for (size_t i = 0; i < steps.size(); ++i) steps[i] = stepTo(static_cast<int>(i % 8), index);
   for (size_t i = 0; i < count; ++i) std::memcpy(&batch.own[kPlace * i], &points[first + i], kBytes);
   findOctants(count, batch);
   const auto* entries = index.ptr<int32_t>(0);
@@ -136,9 +140,13 @@ void chooseByVectors(const std::vector<EdgePixel>& points, const cv::Mat& index,
   HWY_ALIGN int32_t best_ahead[kBatch + kSlack];
   HWY_ALIGN int32_t best_behind[kBatch + kSlack];
   std::memset(&batch, 0, sizeof(batch));
+  Steps steps;
+  for (size_t i = 0; i < steps.size(); ++i) steps[i] = stepTo(static_cast<int>(i % 8), index);
+  const auto* entries = index.ptr<int32_t>(0);
+  const auto row_step = static_cast<std::ptrdiff_t>(index.step1());
   for (size_t first = 0; first < points.size(); first += kBatch) {
     const size_t count = std::min(kBatch, points.size() - first);
-    lookUp(points, index, first, count, batch);
+    lookUp(points, index, steps, first, count, batch);
     for (size_t i = 0; i < count; i += hn::Lanes(d)) {
       FloatVector x, y, normal_x, normal_y;
       hn::LoadInterleaved4(d, &batch.own[kPlace * i], x, y, normal_x, normal_y);
@@ -149,12 +157,33 @@ void chooseByVectors(const std::vector<EdgePixel>& points, const cv::Mat& index,
       hn::StoreU(chooseSide(batch, 1, i, x, y, normal_x, normal_y, normal_y, opposite_x), di, best_behind + i);
     }
     for (size_t i = 0; i < count; ++i) {
-      const EdgePixel& point = points[first + i];
-      const bool is_named = index.ptr<int32_t>(point.cell.y)[point.cell.x] == static_cast<int32_t>(first + i);
+      const cv::Point& cell = points[first + i].cell;
+      const bool is_named = entries[cell.y * row_step + cell.x] == static_cast<int32_t>(first + i);
       ahead[first + i] = is_named ? best_ahead[i] : kNotNamed;
       behind[first + i] = is_named ? best_behind[i] : kNotNamed;
     }
   }
+}
+
+// Forgets those choices that are not answered. Their number is at least that of a vector's lanes.
+void forgetUnanswered(const std::vector<int>& answers, std::vector<int>& choices) {
+  const Integers d;
+  const auto none = hn::Set(d, -1);
+  const size_t last = choices.size() - hn::Lanes(d);
+  for (size_t next = 0; next < choices.size(); next += hn::Lanes(d)) {
+    const size_t i = std::min(next, last);
+    const auto choice = hn::LoadU(d, &choices[i]);
+    const auto is_choice = hn::Gt(choice, none);
+    const auto answer = hn::GatherIndex(d, answers.data(), hn::IfThenElseZero(is_choice, choice));
+    const auto is_answered = hn::Eq(answer, hn::Iota(d, static_cast<int32_t>(i)));
+    hn::StoreU(hn::IfThenElse(hn::AndNot(is_answered, is_choice), none, choice), d, &choices[i]);
+  }
+}
+
+void keepMutualByVectors(std::vector<int>& ahead, std::vector<int>& behind) {
+  if (ahead.size() < hn::Lanes(Integers())) return keepMutualReference(ahead, behind);
+  forgetUnanswered(behind, ahead);
+  forgetUnanswered(ahead, behind);
 }
 
 #endif
@@ -168,10 +197,15 @@ HWY_AFTER_NAMESPACE();
 namespace edgeslam {
 
 HWY_EXPORT(chooseByVectors);
+HWY_EXPORT(keepMutualByVectors);
 
 void chooseNeighbours(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
                       std::vector<int>& behind) {
   HWY_DYNAMIC_DISPATCH(chooseByVectors)(points, index, ahead, behind);
+}
+
+void keepMutual(std::vector<int>& ahead, std::vector<int>& behind) {
+  HWY_DYNAMIC_DISPATCH(keepMutualByVectors)(ahead, behind);
 }
 
 }  // namespace edgeslam

@@ -17,9 +17,14 @@ constexpr int kNotNamed = -2;
 void chooseNeighbours(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
                       std::vector<int>& behind);
 
+// Of each point's choices only those stay that are mutual: `next` ahead of a point is -1 where the point is not the one
+// behind `next`, and the other way round. Both hold -1, kNotNamed or indices of each other's entries.
+void keepMutual(std::vector<int>& ahead, std::vector<int>& behind);
+
 // The same, one point after the other.
 void chooseNeighboursReference(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
                                std::vector<int>& behind);
+void keepMutualReference(std::vector<int>& ahead, std::vector<int>& behind);
 
 constexpr float kLeastNeighbourAgreement = 0.6F;  // dot product of the normals of two neighbours along an edge
 

@@ -67,4 +67,15 @@ void chooseNeighboursReference(const std::vector<EdgePixel>& points, const cv::M
   }
 }
 
+void keepMutualReference(std::vector<int>& ahead, std::vector<int>& behind) {
+  for (size_t i = 0; i < ahead.size(); ++i) {
+    const int next = ahead[i];
+    if (next >= 0 && behind[static_cast<size_t>(next)] != static_cast<int>(i)) ahead[i] = -1;
+  }
+  for (size_t i = 0; i < behind.size(); ++i) {
+    const int previous = behind[i];
+    if (previous >= 0 && ahead[static_cast<size_t>(previous)] != static_cast<int>(i)) behind[i] = -1;
+  }
+}
+
 }  // namespace edgeslam

@@ -40,9 +40,22 @@ using IntegerVector = hn::Vec<Integers>;
 constexpr int kLargestWindowRadius = 3;  // that fits a row of the window
 constexpr size_t kSummands = 4;
 
+// Steepness is judged before all else in 16 bits: the upper halves of the squares of the components of twice the
+// blurred image's gradient times kSquareScale, each cut off at kLargestComponent.
+constexpr int kSquareScale = 8;
+constexpr int16_t kLargestComponent = INT16_MAX / kSquareScale;
+
+// No gradient that is steep enough has a smaller sum of them.
+int16_t leastSquare(const EdgeOptions& options) {
+  constexpr double kLost = 2.01;          // by rounding down twice, and by what floating-point numbers may round up
+  constexpr double kLargest = 127 * 127;  // of a component that is cut off, or less
+  const double steep = 2.0 * kBlurScale * kSquareScale * std::max(0.0, options.gradient_threshold);
+  return static_cast<int16_t>(std::clamp(steep * steep / (1 << 16) - kLost, 0.0, kLargest));
+}
+
 // Sets the bits of row y, the first one for the pixel `begin`, of those `count` pixels that may hold an edge: the DoG
-// changes sign towards a 4-neighbour that is hardly nearer to zero, and the gradient is steep enough.
-void markRow(const DifferenceOfGaussians& images, int y, int begin, size_t count, int16_t least_difference,
+// changes sign towards a 4-neighbour that is hardly nearer to zero, and the gradient is about steep enough.
+void markRow(const DifferenceOfGaussians& images, int y, int begin, size_t count, int16_t least_square,
              uint8_t* HWY_RESTRICT bits) {
   const Pixels d;
   const auto* narrow = images.narrow.ptr<int16_t>(y) + begin;
@@ -52,7 +65,7 @@ void markRow(const DifferenceOfGaussians& images, int y, int begin, size_t count
   const auto* dog_above = images.dog.ptr<int16_t>(y - 1) + begin;
   const auto* dog_below = images.dog.ptr<int16_t>(y + 1) + begin;
   const auto zero = hn::Zero(d);
-  const auto below_least = hn::Set(d, static_cast<int16_t>(least_difference - 1));
+  const auto below_least_square = hn::Set(d, static_cast<int16_t>(least_square - 1));
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto along_x = hn::Abs(hn::Sub(hn::LoadU(d, narrow + i + 1), hn::LoadU(d, narrow + i - 1)));
     const auto along_y = hn::Abs(hn::Sub(hn::LoadU(d, narrow_below + i), hn::LoadU(d, narrow_above + i)));
@@ -67,7 +80,12 @@ void markRow(const DifferenceOfGaussians& images, int y, int begin, size_t count
     const auto positive = hn::Gt(here, zero);
     const auto crosses =
         hn::Or(hn::AndNot(hn::Gt(lowest, bar), positive), hn::Not(hn::Or(positive, hn::Lt(highest, bar))));
-    const auto marked = hn::And(crosses, hn::Gt(hn::Max(along_x, along_y), below_least));
+    const auto squared = [&](hn::Vec<Pixels> component) HWY_ATTR {
+      const auto scaled = hn::ShiftLeft<3>(hn::Min(component, hn::Set(d, kLargestComponent)));
+      return hn::MulHigh(scaled, scaled);
+    };
+    const auto steep = hn::Gt(hn::Add(squared(along_x), squared(along_y)), below_least_square);
+    const auto marked = hn::And(crosses, steep);
     hn::StoreMaskBits(d, marked, bits + i / 8);
   }
 }
@@ -279,9 +297,10 @@ bool findByVectors(const DifferenceOfGaussians& images, const EdgeOptions& optio
   const Thresholds thresholds = {threshold * threshold,
                                  static_cast<int32_t>(std::floor(std::clamp(options.sign_balance, -1.0, 1.0) * window)),
                                  window};
+  const int16_t least_square = leastSquare(options);
   const auto gather_row = radius == 1 ? gather<1> : radius == 2 ? gather<2> : gather<3>;
   for (int y = margin; y < size.height - margin; ++y) {
-    markRow(images, y, margin, count, leastDifference(options), pixels.candidates.marks.data());
+    markRow(images, y, margin, count, least_square, pixels.candidates.marks.data());
     const size_t listed = listMarked(pixels.candidates.marks.data(), margin, count, pixels.candidates.x.data());
     gather_row(images, y, listed, pixels.candidates);
     addEdges(listed, y, thresholds, mostEdgePoints(size), pixels, index.ptr<int32_t>(y));

@@ -12,8 +12,9 @@ bool nearerToRows(const Eigen::Vector2f& normal) { return std::abs(normal.x()) >
 
 void thin(const std::vector<EdgePixel>& points, cv::Mat& index) {
   const auto row_step = static_cast<std::ptrdiff_t>(index.step1());
+  auto* entries = index.ptr<int>(0);
   for (const EdgePixel& point : points) {
-    int& here = index.ptr<int>(point.cell.y)[point.cell.x];
+    int& here = entries[point.cell.y * row_step + point.cell.x];
     const std::ptrdiff_t across = nearerToRows(point.normal) ? 1 : row_step;
     for (int* beside : {&here - across, &here + across}) {
       if (*beside < 0 || here < 0) continue;

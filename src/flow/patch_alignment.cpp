@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "flow/warped_window.h"
 #include "image/pyramid.h"
 
 namespace edgeslam {
@@ -33,27 +34,12 @@ WindowPlace placeAround(const cv::Mat& image, const Eigen::Vector2f& centre, int
           bilinearWeights(left - left_floor, top - top_floor)};
 }
 
-// Samples (side + 2)^2 positions that `warp` spreads out around `centre`, in steps of 1/2^16 px.
-void sampleWarped(const cv::Mat& image, const Eigen::Vector2f& centre, const Eigen::Matrix2f& warp, int side,
-                  SampledWindow& window) {
+// The grid that `warp` spreads out around `centre`.
+WarpedGrid gridAround(const Eigen::Vector2f& centre, const Eigen::Matrix2f& warp) {
   constexpr int one = 1 << 16;
-  const int outer = side + 2, radius = outer / 2;
   const auto fixed = [](float value) { return static_cast<std::int32_t>(std::lround(value * one)); };
-  const std::int32_t x_by_column = fixed(warp(0, 0)), y_by_column = fixed(warp(1, 0)), x_by_row = fixed(warp(0, 1)),
-                     y_by_row = fixed(warp(1, 1));
-  const auto step = static_cast<std::ptrdiff_t>(image.step[0]);
-  for (int row = 0; row < outer; ++row) {
-    std::int32_t x = fixed(centre.x()) + (row - radius) * x_by_row - radius * x_by_column;
-    std::int32_t y = fixed(centre.y()) + (row - radius) * y_by_row - radius * y_by_column;
-    std::int16_t* samples = window.data() + row * window_row;
-    for (int column = 0; column < outer; ++column, x += x_by_column, y += y_by_column) {
-      const std::uint8_t* at = image.data + (y >> 16) * step + (x >> 16);
-      const int right = (x >> 8) & 255, below = (y >> 8) & 255;
-      const int upper = (256 - right) * at[0] + right * at[1];
-      const int lower = (256 - right) * at[step] + right * at[step + 1];
-      samples[column] = static_cast<std::int16_t>(((256 - below) * upper + below * lower + (1 << 12)) >> 13);
-    }
-  }
+  return {fixed(centre.x()), fixed(centre.y()), fixed(warp(0, 0)),
+          fixed(warp(1, 0)), fixed(warp(0, 1)), fixed(warp(1, 1))};
 }
 
 // Sums in units of grey values and pixels, of values whose mean is taken off exactly.
@@ -124,7 +110,7 @@ bool makeTemplate(const cv::Mat& image, const Eigen::Vector2f& pixel, const Eige
     const WindowPlace place = placeAround(image, pixel, outer);
     sampleWindow(place.corner, place.step, place.weights, side, window);
   } else {
-    sampleWarped(image, pixel, warp, side, window);
+    sampleWarpedWindow(image.data, static_cast<std::ptrdiff_t>(image.step[0]), gridAround(pixel, warp), side, window);
   }
   writeTemplate(makePatchSamples(window, side, patch.samples), patch);
   return true;

@@ -111,13 +111,17 @@ HWY_INLINE RowSums sumAlongRow(const int16_t* HWY_RESTRICT upper, const int16_t*
                                const FixedGaussian& gaussian) {
   Sum even_upper, odd_upper, even_lower, odd_lower;
   const int32_t* pairs = gaussian.pairs_across.data();
+  const int32_t* pairs_of_odd = gaussian.pairs_one_further.data();
   const size_t count = gaussian.pairs_across.size();
   for (size_t i = 0; i < count; ++i) {
     const Vector weights = weightsOf(pairs[i]);
-    even_upper.add(hn::LoadU(Narrow(), upper + 2 * i), weights);
-    odd_upper.add(hn::LoadU(Narrow(), upper + 2 * i + 1), weights);
-    even_lower.add(hn::LoadU(Narrow(), lower + 2 * i), weights);
-    odd_lower.add(hn::LoadU(Narrow(), lower + 2 * i + 1), weights);
+    const Vector weights_of_odd = weightsOf(pairs_of_odd[i]);
+    const Vector upper_values = hn::LoadU(Narrow(), upper + 2 * i);
+    const Vector lower_values = hn::LoadU(Narrow(), lower + 2 * i);
+    even_upper.add(upper_values, weights);
+    odd_upper.add(upper_values, weights_of_odd);
+    even_lower.add(lower_values, weights);
+    odd_lower.add(lower_values, weights_of_odd);
   }
   RowSums sums = {even_upper.total(), odd_upper.total(), even_lower.total(), odd_lower.total()};
   if (gaussian.centre_is_less) {

@@ -23,7 +23,10 @@ FixedGaussian withPairs(std::vector<int32_t> weights) {
     return std::abs(k) > radius ? 0 : gaussian.weights[static_cast<size_t>(std::abs(k))];
   };
   for (int k = 0; k <= radius; k += 2) gaussian.pairs_from_centre.push_back(pairOf(weight(k), weight(k + 1)));
-  for (int k = -radius; k <= radius; k += 2) gaussian.pairs_across.push_back(pairOf(weight(k), weight(k + 1)));
+  for (int k = -radius; k <= radius; k += 2) {
+    gaussian.pairs_across.push_back(pairOf(weight(k), weight(k + 1)));
+    gaussian.pairs_one_further.push_back(pairOf(weight(k - 1), weight(k)));
+  }
   gaussian.centre_is_less = weight(0) >= 1 << 15;
   return gaussian;
 }

@@ -16,6 +16,7 @@ struct FixedGaussian {
   // does not fit 16 bits with its sign, the weight of the centre of a narrow Gaussian, is less by 1 << 16.
   std::vector<int32_t> pairs_from_centre;  // (0, 1), (2, 3) ... up to the radius
   std::vector<int32_t> pairs_across;       // (-radius, 1 - radius) ... (radius, nothing)
+  std::vector<int32_t> pairs_one_further;  // (nothing, -radius) ... (radius - 1, radius)
   bool centre_is_less = false;
 
   int radius() const { return static_cast<int>(weights.size()) - 1; }  // [px]

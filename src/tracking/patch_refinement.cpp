@@ -1,7 +1,10 @@
 #include "tracking/patch_refinement.h"
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
+
+#include "geometry/undistortion.h"
 
 namespace edgeslam {
 namespace {
@@ -43,15 +46,17 @@ Refinement refine(const Camera& camera, const MapView& view, const FrameImages& 
 Eigen::Matrix2f keyframeWarp(const Camera& camera, const Pose& camera_T_keyframe, const Eigen::Vector2f& keyframe_pixel,
                              double depth) {
   constexpr double step = 4;  // [px]
-  const Eigen::Vector2d centre = keyframe_pixel.cast<double>();
-  const auto transfer = [&](const Eigen::Vector2d& pixel) {
-    return project(camera, camera_T_keyframe * Eigen::Vector3d(bearing(camera, pixel) * depth));
-  };
+  const Eigen::Vector2d centre = keyframe_pixel.cast<double>(), right(step, 0), down(0, step);
+  const std::array<Eigen::Vector2d, 4> around = {centre + right, centre - right, centre + down, centre - down};
+  std::array<Eigen::Vector3d, 4> bearings;
+  bearingsOf(camera, around.data(), around.size(), bearings.data());
+  std::array<Eigen::Vector2d, 4> there;
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    there[i] = project(camera, camera_T_keyframe * Eigen::Vector3d(bearings[i] * depth));
+  }
   Eigen::Matrix2d camera_by_keyframe;
-  camera_by_keyframe.col(0) =
-      (transfer(centre + Eigen::Vector2d(step, 0)) - transfer(centre - Eigen::Vector2d(step, 0))) / (2 * step);
-  camera_by_keyframe.col(1) =
-      (transfer(centre + Eigen::Vector2d(0, step)) - transfer(centre - Eigen::Vector2d(0, step))) / (2 * step);
+  camera_by_keyframe.col(0) = (there[0] - there[1]) / (2 * step);
+  camera_by_keyframe.col(1) = (there[2] - there[3]) / (2 * step);
   return camera_by_keyframe.inverse().cast<float>();
 }
 

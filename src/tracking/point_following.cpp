@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/undistortion.h"
+
 namespace edgeslam {
 namespace {
 
@@ -47,6 +49,15 @@ bool insideImage(const cv::Mat& image, const Eigen::Vector2f& pixel, float borde
 
 }  // namespace
 
+Bearings bearingsOfTracks(const Camera& camera, const std::vector<Track>& tracks, std::pmr::memory_resource* memory) {
+  std::pmr::vector<Eigen::Vector2d> pixels(memory);
+  pixels.reserve(tracks.size());
+  for (const Track& track : tracks) pixels.push_back(track.pixel.cast<double>());
+  Bearings bearings(tracks.size(), memory);
+  bearingsOf(camera, pixels.data(), pixels.size(), bearings.data());
+  return bearings;
+}
+
 Pixels predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
                      const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth,
                      std::pmr::memory_resource* memory) {
@@ -54,12 +65,14 @@ Pixels predictPixels(const Camera& camera, const std::vector<Track>& tracks, con
   Pixels predictions(memory);
   predictions.reserve(tracks.size());
   AscendingPoints points(view);
-  for (const Track& track : tracks) {
+  const Bearings bearings = bearingsOfTracks(camera, tracks, memory);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const Track& track = tracks[i];
     double depth = scene_depth;
     if (const ViewPoint* point = points.find(track.id)) {
       depth = (last_T_world * worldPosition(view, *point)).norm();
     }
-    const Eigen::Vector3d in_last = bearing(camera, track.pixel.cast<double>()) * depth;
+    const Eigen::Vector3d in_last = bearings[i] * depth;
     const Eigen::Vector3d in_predicted = predicted_T_world * (world_T_last * in_last);
     predictions.push_back(in_predicted.z() > 0.01 * depth ? Eigen::Vector2f(project(camera, in_predicted).cast<float>())
                                                           : track.pixel);

@@ -12,6 +12,11 @@
 
 namespace edgeslam {
 
+// Where each track was last seen from the camera: unit vectors in its frame.
+using Bearings = std::pmr::vector<Eigen::Vector3d>;
+
+Bearings bearingsOfTracks(const Camera& camera, const std::vector<Track>& tracks, std::pmr::memory_resource* memory);
+
 // Where each track should be seen after the camera moved: its last pixel plus the motion of its map point, or, where it
 // has none, of a point at the scene's usual depth.
 using Pixels = std::pmr::vector<Eigen::Vector2f>;

@@ -163,10 +163,12 @@ Pose Tracker::alignImages(double scene_depth) {
   AlignmentPoints points(&scratch_);
   points.reserve(last_.tracks.size());
   AscendingPoints map_points(view_);
-  for (const Track& track : last_.tracks) {
+  const Bearings bearings = bearingsOfTracks(camera_, last_.tracks, &scratch_);
+  for (std::size_t i = 0; i < last_.tracks.size(); ++i) {
+    const Track& track = last_.tracks[i];
     const ViewPoint* point = map_points.find(track.id);
     const double depth = point ? (last_T_world * worldPosition(view_, *point)).norm() : scene_depth;
-    points.push_back({track.pixel, bearing(camera_, track.pixel.cast<double>()) * depth});
+    points.push_back({track.pixel, bearings[i] * depth});
   }
   const Pose to_T_from =
       alignSparsely(camera_, from, to, points, by_rotation, by_velocity, options_.alignment, &scratch_);

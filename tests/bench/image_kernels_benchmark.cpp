@@ -12,11 +12,13 @@
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
 #include <vector>
 
 #include "bench/ratio_reporter.h"
+#include "bench/timed_work.h"
 #include "edges/edge_detection.h"
 #include "edges/edge_neighbours.h"
 #include "edges/point_choice.h"
@@ -31,62 +33,38 @@ namespace {
 
 constexpr int kLevels = 6;
 
-void add(const std::string& name, const std::function<void()>& work) {
-  benchmark::RegisterBenchmark(name.c_str(), [work](benchmark::State& state) {
-    for (auto _ : state) {
-      work();
-      benchmark::ClobberMemory();
-    }
-  })->Unit(benchmark::kMillisecond);
-}
-
-// Reads and writes as many bytes as a kernel does at least.
-void addCopy(const std::string& name, size_t bytes) {
-  auto from = std::make_shared<std::vector<uint8_t>>(bytes, uint8_t{1});
-  auto to = std::make_shared<std::vector<uint8_t>>(bytes);
-  add(name + "/copy", [=] {
-    std::memcpy(to->data(), from->data(), from->size());
-    benchmark::DoNotOptimize(to->data());
-  });
-}
-
 void addPyramid(const cv::Mat& grey) {
   auto pyramid = std::make_shared<ImagePyramid>(buildPyramid(grey, kLevels));
-  add("pyramid/ours", [=] { buildPyramid(grey, kLevels, *pyramid); });
-  add("pyramid/reference", [=] {
+  addTimed("pyramid/ours", [=] { buildPyramid(grey, kLevels, *pyramid); });
+  addTimed("pyramid/reference", [=] {
     grey.copyTo(pyramid->levels[0]);
     for (size_t i = 1; i < pyramid->levels.size(); ++i) halveReference(pyramid->levels[i - 1], pyramid->levels[i]);
   });
-  auto levels = std::make_shared<std::vector<cv::Mat>>(kLevels);
-  auto bordered = std::make_shared<std::vector<cv::Mat>>(kLevels);
-  add("pyramid/pyrDown", [=] {
-    for (size_t i = 0; i < kLevels; ++i) {
-      if (i > 0) cv::pyrDown((*levels)[i - 1], (*levels)[i]);
-      if (i == 0) (*levels)[0] = grey;
-      const int border = pyramid_border;
-      cv::copyMakeBorder((*levels)[i], (*bordered)[i], border, border, border, border, cv::BORDER_REFLECT_101);
-    }
+  auto opencv = std::make_shared<std::vector<cv::Mat>>();
+  addTimed("pyramid/buildOpticalFlowPyramid", [=] {
+    cv::buildOpticalFlowPyramid(grey, *opencv, {pyramid_border, pyramid_border}, kLevels - 1,
+                                /*withDerivatives=*/false);
   });
-  addCopy("pyramid", grey.total() * 4 / 3);
+  addCopy("pyramid", grey.total() * 8 / 3);  // each level is read once and written once
 }
 
 void addDifferenceOfGaussians(const cv::Mat& grey) {
   const EdgeOptions options;
   auto images = std::make_shared<DifferenceOfGaussians>();
-  add("dog/ours", [=] { differenceOfGaussians(grey, options.sigma, options.sigma_ratio, *images); });
-  add("dog/reference", [=] { differenceOfGaussiansReference(grey, options.sigma, options.sigma_ratio, *images); });
+  addTimed("dog/ours", [=] { differenceOfGaussians(grey, options.sigma, options.sigma_ratio, *images); });
+  addTimed("dog/reference", [=] { differenceOfGaussiansReference(grey, options.sigma, options.sigma_ratio, *images); });
   struct Blurs {
     cv::Mat scaled, narrow, wide, dog;
   };
   auto blurs = std::make_shared<Blurs>();
-  add("dog/GaussianBlur", [=] {
+  addTimed("dog/GaussianBlur twice", [=] {
     const double further = options.sigma * std::sqrt(options.sigma_ratio * options.sigma_ratio - 1);
     grey.convertTo(blurs->scaled, CV_16U, kBlurScale);
     cv::GaussianBlur(blurs->scaled, blurs->narrow, {11, 11}, options.sigma, options.sigma, cv::BORDER_REPLICATE);
     cv::GaussianBlur(blurs->narrow, blurs->wide, {9, 9}, further, further, cv::BORDER_REPLICATE);
     cv::subtract(blurs->narrow, blurs->wide, blurs->dog, cv::noArray(), CV_16S);
   });
-  addCopy("dog", grey.total() * 5 / 2);  // half of what is read and written: 1 byte, and 2 of each image
+  addCopy("dog", grey.total() * 5);  // reads 1 byte a pixel, writes 2 of each image
 }
 
 void addEdges(const cv::Mat& grey) {
@@ -100,26 +78,40 @@ void addEdges(const cv::Mat& grey) {
   differenceOfGaussians(grey, options.sigma, options.sigma_ratio, *blurs);
   auto pixels = std::make_shared<EdgePixels>();
   auto index = std::make_shared<cv::Mat>();
-  add("edge_pixels/ours", [=] { findEdgePixels(*blurs, options, *pixels, *index); });
-  add("edge_pixels/reference", [=] { findEdgePixelsReference(*blurs, options, *pixels, *index); });
+  addTimed("edge_pixels/ours", [=] { findEdgePixels(*blurs, options, *pixels, *index); });
+  addTimed("edge_pixels/reference", [=] { findEdgePixelsReference(*blurs, options, *pixels, *index); });
   auto sobel = std::make_shared<std::array<cv::Mat, 2>>();
-  add("edge_pixels/Sobel", [=] {
+  addTimed("edge_pixels/Sobel, both ways", [=] {
     cv::Sobel(grey, (*sobel)[0], CV_16S, 1, 0);
     cv::Sobel(grey, (*sobel)[1], CV_16S, 0, 1);
   });
 
+  addCopy("edge_pixels", grey.total() * 8);  // reads 2 bytes a pixel of each image, writes 4 of the index
+
   auto thinned = std::make_shared<EdgePixels>();
   auto named = std::make_shared<cv::Mat>();
   findEdgePixels(*blurs, options, *thinned, *named);
+  const cv::Mat unthinned = named->clone();
+  auto again = std::make_shared<cv::Mat>(unthinned.clone());
+  addTimed("thinning with copy of index/ours", [=] {
+    unthinned.copyTo(*again);
+    thin(thinned->points, *again);
+  });
+  addCopy("thinning with copy of index", unthinned.total() * 8);
   thin(thinned->points, *named);
   auto links = std::make_shared<std::array<std::vector<int>, 2>>();
   links->fill(std::vector<int>(thinned->points.size()));
-  add("neighbours/ours", [=] { chooseNeighbours(thinned->points, *named, (*links)[0], (*links)[1]); });
-  add("neighbours/reference", [=] { chooseNeighboursReference(thinned->points, *named, (*links)[0], (*links)[1]); });
+  addTimed("neighbours/ours", [=] { chooseNeighbours(thinned->points, *named, (*links)[0], (*links)[1]); });
+  addTimed("neighbours/reference",
+           [=] { chooseNeighboursReference(thinned->points, *named, (*links)[0], (*links)[1]); });
 
-  add("edges/ours", [=] { detectEdges(grey, options, *workspace, *edges); });
+  const std::size_t touched = thinned->points.size() * (sizeof(EdgePixel) + 2 * sizeof(int) + 6 * 4 * sizeof(float));
+  addCopy("neighbours", touched);  // each point, the six next to it, and what is chosen
+
+  addTimed("edges/ours", [=] { detectEdges(grey, options, *workspace, *edges); });
   auto canny = std::make_shared<cv::Mat>();
-  add("edges/Canny", [=] { cv::Canny(grey, *canny, 50, 100); });
+  addTimed("edges/Canny", [=] { cv::Canny(grey, *canny, 50, 100); });
+  addCopy("edges", grey.total() * 5 + edges->points.size() * sizeof(EdgePoint));  // reads 1 byte a pixel, writes 4
 }
 
 void addPoints(const cv::Mat& grey) {
@@ -132,15 +124,26 @@ void addPoints(const cv::Mat& grey) {
     const cv::Rect window(static_cast<int>(point.pixel.x()) - 7, static_cast<int>(point.pixel.y()) - 7, 15, 15);
     windows.push_back(window & cv::Rect({0, 0}, grey.size()));
   }
-  add("tensors/ours", [=] {
+  addTimed("tensors/ours", [=] {
     for (const cv::Rect& window : windows) benchmark::DoNotOptimize(gradientProducts(grey, window));
   });
-  add("tensors/reference", [=] {
+  addTimed("tensors/reference", [=] {
     for (const cv::Rect& window : windows) benchmark::DoNotOptimize(gradientProductsReference(grey, window));
   });
-  add("points/ours", [=] { choosePoints(grey, *edges, {}, {}, *workspace, *chosen); });
+  auto gradients = std::make_shared<cv::Mat>();
+  addTimed("tensors/cornerEigenValsAndVecs, whole image", [=] { cv::cornerEigenValsAndVecs(grey, *gradients, 15, 3); });
+  addCopy("tensors", windows.size() * (17 * 17 + sizeof(GradientProducts)));
+
+  auto candidates = std::make_shared<std::vector<PointCandidate>>();
+  auto spacing = std::make_shared<PointSpacing>(grey.size(), PointChoiceOptions().spacing);
+  addTimed("candidates/ours", [=] {
+    candidates->clear();
+    findPointCandidates(grey, *edges, *spacing, {}, *candidates);
+  });
+  addTimed("candidates/cornerMinEigenVal", [=] { cv::cornerMinEigenVal(grey, *gradients, 15, 3); });
+  addTimed("points/ours", [=] { choosePoints(grey, *edges, {}, {}, *workspace, *chosen); });
   auto corners = std::make_shared<std::vector<cv::Point2f>>();
-  add("points/goodFeaturesToTrack", [=] { cv::goodFeaturesToTrack(grey, *corners, 550, 0.01, 6); });
+  addTimed("points/goodFeaturesToTrack", [=] { cv::goodFeaturesToTrack(grey, *corners, 550, 0.01, 6); });
 }
 
 // Empty where the file is neither an image nor a video.

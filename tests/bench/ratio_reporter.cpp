@@ -18,13 +18,13 @@ void RatioReporter::ReportRuns(const std::vector<Run>& runs) {
 
 void RatioReporter::Finalize() {
   ConsoleReporter::Finalize();
-  std::printf("\n%-16s %10s   others, as a multiple of ours\n", "kernel", "ours [ms]");
+  std::printf("\n%-28s %10s   others, as a multiple of ours\n", "kernel", "ours [ms]");
   for (const auto& [kernel, variants] : shortest_ns_) {
     const auto ours = variants.find("ours");
     if (ours == variants.end()) continue;
-    std::printf("%-16s %10.3f  ", kernel.c_str(), ours->second / 1e6);
+    std::printf("%-28s %10.4f  ", kernel.c_str(), ours->second / 1e6);
     for (const auto& [variant, time_ns] : variants) {
-      if (variant != "ours") std::printf(" %s %.2f", variant.c_str(), time_ns / ours->second);
+      if (variant != "ours") std::printf("  %s %.3g", variant.c_str(), time_ns / ours->second);
     }
     std::printf("\n");
   }

@@ -57,6 +57,11 @@ class Robot {
     const std::lock_guard<std::mutex> lock(mutex_);
     return heard_;
   }
+  // Of the latest state; 0 before the first.
+  std::int64_t latestUtime() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return heard_.states.empty() ? 0 : heard_.states.back().utime;
+  }
   bool hears(const std::function<bool(const Heard&)>& what) const {
     return comesTrue([&] {
       const std::lock_guard<std::mutex> lock(mutex_);

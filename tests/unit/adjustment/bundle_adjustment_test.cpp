@@ -6,103 +6,11 @@
 #include <limits>
 
 #include "adjustment/reprojection.h"
-#include "synthetic_scene.h"
+#include "ceres_bundle_adjustment.h"
+#include "synthetic_bundle.h"
 
 namespace edgeslam::test {
 namespace {
-
-struct Scene {
-  Camera camera;
-  BundleProblem truth;  // observations without noise
-};
-
-struct SceneOptions {
-  int cameras = 6;
-  int fixed = 2;
-  int points = 150;
-  double sigma_normal = 0.5;
-  double sigma_tangent = 0.5;
-  double noise = 0;
-  CameraModel model = CameraModel::pinhole_radial_tangential;
-};
-
-// Cameras on a line of 1 unit, points at 1.5 to 6 units, each hosted by one camera and seen by all others that can, at
-// least by one.
-Scene makeScene(Random& random, const SceneOptions& options) {
-  Scene scene;
-  scene.camera = testCamera(options.model);
-  BundleProblem& problem = scene.truth;
-  for (int i = 0; i < options.cameras; ++i) {
-    BundleCamera camera;
-    camera.world_T_camera = randomPose(random, 0.1, 0.1);
-    camera.world_T_camera.translation.x() += static_cast<double>(i) / (options.cameras - 1);
-    camera.fixed = i < options.fixed;
-    problem.cameras.push_back(camera);
-  }
-  while (static_cast<int>(problem.points.size()) < options.points) {
-    const int index = static_cast<int>(problem.points.size());
-    const std::size_t observations_before = problem.observations.size();
-    BundlePoint point;
-    point.host = index % options.cameras;
-    point.host_bearing = bearing(scene.camera, randomPixel(random, scene.camera));
-    point.inverse_depth = 1 / uniform(random, 1.5, 6);
-    const Eigen::Vector3d world = problem.cameras[static_cast<std::size_t>(point.host)].world_T_camera *
-                                  (point.host_bearing / point.inverse_depth);
-    for (int c = 0; c < options.cameras; ++c) {
-      if (c == point.host) continue;
-      const Eigen::Vector3d seen = problem.cameras[static_cast<std::size_t>(c)].world_T_camera.inverse() * world;
-      if (!inFront(scene.camera, seen)) continue;
-      const Eigen::Vector2d pixel = project(scene.camera, seen);
-      if (!insideImage(scene.camera, pixel)) continue;
-      BundleObservation o;
-      o.camera = c;
-      o.point = index;
-      o.measurement = measure(random, pixel, uniform(random, -M_PI, M_PI), options.sigma_normal, options.sigma_tangent,
-                              options.noise);
-      problem.observations.push_back(o);
-    }
-    if (problem.observations.size() > observations_before) problem.points.push_back(point);
-  }
-  return scene;
-}
-
-// The truth with its free cameras moved and its free points' depths off by up to 20 %.
-BundleProblem perturbedProblem(Random& random, const BundleProblem& truth, double translation, double rotation) {
-  BundleProblem problem = truth;
-  for (BundleCamera& c : problem.cameras) {
-    if (!c.fixed) c.world_T_camera = perturbed(random, c.world_T_camera, translation, rotation);
-  }
-  for (BundlePoint& p : problem.points) {
-    if (!p.fixed) p.inverse_depth *= uniform(random, 0.8, 1.25);
-  }
-  return problem;
-}
-
-double largestTranslationError(const BundleProblem& a, const BundleProblem& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
-    largest =
-        std::max(largest, (a.cameras[i].world_T_camera.translation - b.cameras[i].world_T_camera.translation).norm());
-  }
-  return largest;
-}
-
-double largestRotationError(const BundleProblem& a, const BundleProblem& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
-    largest =
-        std::max(largest, rotationAngle(a.cameras[i].world_T_camera.rotation, b.cameras[i].world_T_camera.rotation));
-  }
-  return largest;
-}
-
-double largestDepthError(const BundleProblem& a, const BundleProblem& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.points.size(); ++i) {
-    largest = std::max(largest, std::abs(a.points[i].inverse_depth - b.points[i].inverse_depth));
-  }
-  return largest;
-}
 
 bool sameBytes(const Pose& a, const Pose& b) {
   return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
@@ -129,9 +37,9 @@ class BundleAdjustmentOfModel : public testing::TestWithParam<CameraModel> {};
 TEST_P(BundleAdjustmentOfModel, RecoversExactStructure) {
   Random random(1);
   for (int run = 0; run < 10; ++run) {
-    SceneOptions options;
+    BundleSceneOptions options;
     options.model = GetParam();
-    const Scene scene = makeScene(random, options);
+    const BundleScene scene = makeBundleScene(random, options);
     BundleProblem problem = perturbedProblem(random, scene.truth, 0.1, 0.05);
     const BundleResult result = adjustBundle(scene.camera, problem, manyIterations());
     ASSERT_TRUE(result.usable);
@@ -147,10 +55,10 @@ TEST_P(BundleAdjustmentOfModel, RecoversExactStructure) {
 TEST_P(BundleAdjustmentOfModel, KeepsTheScaleWhereOnlyOneCameraIsFixed) {
   Random random(2);
   for (int run = 0; run < 10; ++run) {
-    SceneOptions options;
+    BundleSceneOptions options;
     options.model = GetParam();
     options.fixed = 1;
-    const Scene scene = makeScene(random, options);
+    const BundleScene scene = makeBundleScene(random, options);
     BundleProblem problem = perturbedProblem(random, scene.truth, 0.1, 0.05);
     problem.scale_camera = 5;
     const auto baseline = [](const BundleProblem& p) {
@@ -178,9 +86,9 @@ INSTANTIATE_TEST_SUITE_P(Models, BundleAdjustmentOfModel,
 
 TEST(BundleAdjustment, EdgesOfEveryDirectionRecoverTheStructure) {
   Random random(3);
-  SceneOptions options;
+  BundleSceneOptions options;
   options.sigma_tangent = 1000;
-  const Scene scene = makeScene(random, options);
+  const BundleScene scene = makeBundleScene(random, options);
   BundleProblem problem = perturbedProblem(random, scene.truth, 0.02, 0.01);
   ASSERT_TRUE(adjustBundle(scene.camera, problem, manyIterations()).usable);
   EXPECT_LT(largestTranslationError(problem, scene.truth), 1e-5);
@@ -193,9 +101,9 @@ TEST(BundleAdjustment, NoiseGivesTheErrorThatItShould) {
   int depths = 0;
   constexpr int kRuns = 10;
   for (int run = 0; run < kRuns; ++run) {
-    SceneOptions options;
+    BundleSceneOptions options;
     options.noise = 1;
-    const Scene scene = makeScene(random, options);
+    const BundleScene scene = makeBundleScene(random, options);
     BundleProblem problem = perturbedProblem(random, scene.truth, 0.05, 0.02);
     BundleOptions quadratic = manyIterations();
     quadratic.huber = 1e3;
@@ -225,10 +133,10 @@ TEST(BundleAdjustment, NoiseGivesTheErrorThatItShould) {
 TEST(BundleAdjustment, OutliersAreSuppressed) {
   Random random(5);
   for (int run = 0; run < 10; ++run) {
-    SceneOptions options;
+    BundleSceneOptions options;
     options.noise = 1;
     options.sigma_normal = options.sigma_tangent = 0.3;
-    Scene scene = makeScene(random, options);
+    BundleScene scene = makeBundleScene(random, options);
     std::vector<char> is_outlier;
     for (BundleObservation& o : scene.truth.observations) {
       const bool outlier = uniform(random, 0, 1) < 0.1;
@@ -254,9 +162,9 @@ TEST(BundleAdjustment, OutliersAreSuppressed) {
 
 TEST(BundleAdjustment, FixedThingsStayToTheLastBit) {
   Random random(6);
-  SceneOptions options;
+  BundleSceneOptions options;
   options.noise = 1;
-  const Scene scene = makeScene(random, options);
+  const BundleScene scene = makeBundleScene(random, options);
   BundleProblem problem = perturbedProblem(random, scene.truth, 0.05, 0.02);
   problem.scale_camera = 5;  // and are not scaled either
   for (std::size_t i = 0; i < problem.points.size(); i += 3) problem.points[i].fixed = true;
@@ -273,7 +181,7 @@ TEST(BundleAdjustment, FixedThingsStayToTheLastBit) {
 
 TEST(BundleAdjustment, OnlyCamerasOrOnlyPointsFree) {
   Random random(7);
-  const Scene scene = makeScene(random, {});
+  const BundleScene scene = makeBundleScene(random, {});
   BundleProblem truth = scene.truth;
   for (BundlePoint& p : truth.points) p.fixed = true;
   BundleProblem problem = perturbedProblem(random, truth, 0.1, 0.05);
@@ -289,22 +197,58 @@ TEST(BundleAdjustment, OnlyCamerasOrOnlyPointsFree) {
 
 TEST(BundleAdjustment, LargeProblemsTakeTheSparseWayToTheSameEnd) {
   Random random(8);
-  SceneOptions options;
+  BundleSceneOptions options;
   options.cameras = 40;
   options.points = 200;
-  const Scene scene = makeScene(random, options);
+  const BundleScene scene = makeBundleScene(random, options);
   BundleProblem problem = perturbedProblem(random, scene.truth, 0.02, 0.02);
   ASSERT_TRUE(adjustBundle(scene.camera, problem, manyIterations()).usable);
   EXPECT_LT(largestTranslationError(problem, scene.truth), 1e-6);
   EXPECT_LT(largestDepthError(problem, scene.truth), 1e-6);
 }
 
+class BundleAdjustmentBesideCeres : public testing::TestWithParam<int> {};
+
+TEST_P(BundleAdjustmentBesideCeres, EndsAtTheSameMinimum) {
+  Random random(16);
+  for (int run = 0; run < 6; ++run) {
+    BundleSceneOptions options;
+    options.cameras = GetParam();
+    options.noise = 1;
+    if (run % 3 == 1) options.sigma_tangent = 1000;
+    if (run % 2 == 1) options.model = CameraModel::kannala_brandt;
+    BundleScene scene = makeBundleScene(random, options);
+    for (BundleObservation& o : scene.truth.observations) {
+      if (uniform(random, 0, 1) < 0.05) o.measurement.pixel += uniform(random, 5, 20) * Eigen::Vector2d::UnitY();
+    }
+    for (std::size_t i = 0; i < scene.truth.points.size(); i += 5) scene.truth.points[i].fixed = i % 2 == 0;
+    for (std::size_t i = 1; i < scene.truth.points.size(); i += 5) {
+      scene.truth.points[i].prior_sigma = 0.1;
+      scene.truth.points[i].prior_inverse_depth = scene.truth.points[i].inverse_depth;
+    }
+    BundleProblem ours = perturbedProblem(random, scene.truth, 0.02, 0.01), reference = ours;
+    BundleOptions many;
+    many.iterations = 100;
+    const BundleResult result = adjustBundle(scene.camera, ours, many);
+    ASSERT_TRUE(result.usable);
+    ASSERT_GT(adjustBundleByCeres(scene.camera, reference, many), 0);
+    // Both stop where a step gains less than 1e-6 of the cost.
+    BundleProblem copy = reference;
+    const double reference_cost = adjustBundle(scene.camera, copy, {0, many.huber}).final_cost;
+    EXPECT_NEAR(result.final_cost, reference_cost, 1e-5 * reference_cost);
+    EXPECT_LT(largestTranslationError(ours, reference), 2e-4);
+    EXPECT_LT(largestRotationError(ours, reference), 1e-4);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cameras, BundleAdjustmentBesideCeres, testing::Values(3, 6, 40));
+
 TEST(BundleAdjustment, PriorHoldsWhatParallaxDoesNot) {
   // Two cameras at one place tell nothing of depth.
   Random random(9);
-  SceneOptions options;
+  BundleSceneOptions options;
   options.cameras = 2;
-  Scene scene = makeScene(random, options);
+  BundleScene scene = makeBundleScene(random, options);
   BundleProblem problem = scene.truth;
   problem.cameras[1].world_T_camera.translation = problem.cameras[0].world_T_camera.translation;
   for (BundlePoint& p : problem.points) {
@@ -321,10 +265,10 @@ TEST(BundleAdjustment, PriorHoldsWhatParallaxDoesNot) {
 
 TEST(BundleAdjustment, FarPointsStayBeforeTheCamera) {
   Random random(10);
-  SceneOptions options;
+  BundleSceneOptions options;
   options.noise = 1;
   options.sigma_normal = options.sigma_tangent = 2;
-  Scene scene = makeScene(random, options);
+  BundleScene scene = makeBundleScene(random, options);
   BundleProblem problem = scene.truth;
   // Points practically at infinity: noise alone would put half of them beyond it.
   for (BundlePoint& p : problem.points) p.inverse_depth = 1e-4;
@@ -346,11 +290,11 @@ TEST(BundleAdjustment, FarPointsStayBeforeTheCamera) {
 TEST(BundleAdjustment, SameInputSameBytes) {
   for (const int cameras : {6, 40}) {
     Random random(11);
-    SceneOptions options;
+    BundleSceneOptions options;
     options.cameras = cameras;
     options.fixed = 1;
     options.noise = 1;
-    const Scene scene = makeScene(random, options);
+    const BundleScene scene = makeBundleScene(random, options);
     BundleProblem first = perturbedProblem(random, scene.truth, 0.05, 0.02);
     first.scale_camera = 1;
     BundleProblem second = first;
@@ -371,7 +315,7 @@ TEST(BundleAdjustment, NothingToAdjustIsNotUsable) {
   BundleProblem empty;
   EXPECT_FALSE(adjustBundle(testCamera(CameraModel::kannala_brandt), empty, {}).usable);
 
-  Scene scene = makeScene(random, {});
+  BundleScene scene = makeBundleScene(random, {});
   for (BundleCamera& c : scene.truth.cameras) c.fixed = true;
   for (BundlePoint& p : scene.truth.points) p.fixed = true;
   const BundleResult result = adjustBundle(scene.camera, scene.truth, {});
@@ -382,7 +326,7 @@ TEST(BundleAdjustment, NothingToAdjustIsNotUsable) {
 
 TEST(BundleAdjustment, IndicesOutOfRangeLeaveTheProblem) {
   Random random(13);
-  const Scene scene = makeScene(random, {});
+  const BundleScene scene = makeBundleScene(random, {});
   const BundleProblem good = perturbedProblem(random, scene.truth, 0.05, 0.02);
   for (const int bad : {-1, 1000000}) {
     for (int what = 0; what < 4; ++what) {
@@ -404,7 +348,7 @@ TEST(BundleAdjustment, ValuesThatAreNoNumbersTakeNoPart) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Random random(14);
-  const Scene scene = makeScene(random, {});
+  const BundleScene scene = makeBundleScene(random, {});
   BundleProblem problem = perturbedProblem(random, scene.truth, 0.05, 0.02);
   problem.observations[0].measurement.pixel.x() = kNan;
   problem.observations[1].measurement.pixel.y() = kInfinity;
@@ -433,9 +377,64 @@ TEST(BundleAdjustment, ValuesThatAreNoNumbersTakeNoPart) {
   EXPECT_EQ(lost.points[0].inverse_depth, depth);
 }
 
+// What tells nothing of depth or place must end finite, or be refused with the problem as it was.
+TEST(BundleAdjustment, DegenerateProblemsEndFiniteOrAreRefused) {
+  Random random(17);
+  const BundleScene scene = makeBundleScene(random, {});
+  for (int what = 0; what < 5; ++what) {
+    BundleProblem problem = perturbedProblem(random, scene.truth, 0.02, 0.01);
+    bool nothing_to_adjust = false;
+    if (what == 0) {  // one keyframe alone
+      problem.cameras.resize(1);
+      problem.cameras[0].fixed = false;
+      for (BundlePoint& p : problem.points) p.host = 0;
+      for (BundleObservation& o : problem.observations) o.camera = 0;
+      nothing_to_adjust = true;
+    }
+    if (what == 1) {  // no parallax at all
+      for (BundleCamera& c : problem.cameras) c.world_T_camera.translation.setZero();
+    }
+    if (what == 2) {  // all at infinity
+      for (BundlePoint& p : problem.points) p.inverse_depth = 1e-300;
+    }
+    if (what == 3) {  // nothing fixed, one observation
+      for (BundleCamera& c : problem.cameras) c.fixed = false;
+      problem.observations.resize(1);
+    }
+    if (what == 4) {  // all in the same place of the image
+      for (BundleObservation& o : problem.observations) o.measurement.pixel.setConstant(100);
+      for (BundlePoint& p : problem.points) p.host_bearing = Eigen::Vector3d::UnitZ();
+    }
+    const BundleProblem before = problem;
+    const BundleResult result = adjustBundle(scene.camera, problem, manyIterations());
+    EXPECT_TRUE(result.usable || sameBytes(problem, before)) << what;
+    if (nothing_to_adjust) {
+      EXPECT_FALSE(result.usable);
+    }
+    EXPECT_LE(result.final_cost, result.initial_cost * (1 + 1e-9)) << what;
+    for (const BundleCamera& c : problem.cameras) {
+      EXPECT_TRUE(c.world_T_camera.translation.allFinite() && c.world_T_camera.rotation.coeffs().allFinite()) << what;
+    }
+    for (const BundlePoint& p : problem.points) EXPECT_TRUE(std::isfinite(p.inverse_depth) && p.inverse_depth > 0);
+    for (const double sigma : result.depth_sigmas) EXPECT_TRUE(std::isfinite(sigma));
+  }
+}
+
+TEST(BundleAdjustment, InterruptedLeavesTheProblem) {
+  Random random(18);
+  const BundleScene scene = makeBundleScene(random, {});
+  BundleProblem problem = perturbedProblem(random, scene.truth, 0.02, 0.01);
+  const BundleProblem before = problem;
+  const std::atomic<bool> interrupted{true};
+  BundleOptions options;
+  options.interrupted = &interrupted;
+  EXPECT_FALSE(adjustBundle(scene.camera, problem, options).usable);
+  EXPECT_TRUE(sameBytes(problem, before));
+}
+
 TEST(BundleAdjustment, PointsBehindTheCameraNeitherPullNorBlock) {
   Random random(15);
-  const Scene scene = makeScene(random, {});
+  const BundleScene scene = makeBundleScene(random, {});
   BundleProblem problem = scene.truth;
   // A camera turned away sees nothing of what it is said to see.
   const int turned = static_cast<int>(problem.cameras.size());

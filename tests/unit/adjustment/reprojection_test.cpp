@@ -71,40 +71,32 @@ TEST_P(ReprojectionOfModel, PoseDerivativeMatchesDifferences) {
   }
 }
 
-TEST_P(ReprojectionOfModel, BundleDerivativesMatchDifferences) {
+TEST_P(ReprojectionOfModel, SightDerivativeMatchesDifferences) {
   Random random(3);
   const Camera camera = testCamera(GetParam());
   for (int run = 0; run < 200; ++run) {
     const WhitenedPixel measured = randomWhitenedPixel(random, camera);
-    const Pose host = forwardPose(random), target = forwardPose(random);
+    const CameraFrame host = cameraFrame(forwardPose(random)), target = cameraFrame(forwardPose(random));
     const Eigen::Vector3d host_bearing = bearing(camera, {uniform(random, 200, 440), uniform(random, 150, 330)});
-    const double inverse_depth = run % 10 == 0 ? 0 : uniform(random, 0.01, 0.5);
-    const auto residualAt = [&](const Pose& h, const Pose& t, double rho) {
-      Eigen::Vector2d r;
-      EXPECT_TRUE(bundleResidual(camera, measured, cameraFrame(h), cameraFrame(t), host_bearing, rho, r, nullptr));
-      return r;
-    };
-    Eigen::Vector2d residual;
-    BundleDerivatives analytic;
-    ASSERT_TRUE(bundleResidual(camera, measured, cameraFrame(host), cameraFrame(target), host_bearing, inverse_depth,
-                               residual, &analytic));
-    EXPECT_EQ(residual, residualAt(host, target, inverse_depth));
-    const Matrix26d by_host =
-        numericByPose(host, [&](const Pose& moved) { return residualAt(moved, target, inverse_depth); });
-    const Matrix26d by_target =
-        numericByPose(target, [&](const Pose& moved) { return residualAt(host, moved, inverse_depth); });
+    const Eigen::Vector3d seen = sight(host, target, host_bearing, run % 10 == 0 ? 0 : uniform(random, 0.01, 0.5));
+    Eigen::Vector2d residual, again;
+    Matrix23d analytic;
+    ASSERT_TRUE(sightResidual(camera, measured, target, seen, residual, &analytic));
+    ASSERT_TRUE(sightResidual(camera, measured, target, seen, again, nullptr));
+    EXPECT_EQ(residual, again);
     constexpr double kStep = 1e-6;
-    const Eigen::Vector2d by_inverse_depth =
-        (residualAt(host, target, inverse_depth + kStep) - residualAt(host, target, inverse_depth - kStep)) /
-        (2 * kStep);
-    EXPECT_LT((analytic.by_host - by_host).norm(), 1e-6 * (1 + by_host.norm())) << "run " << run;
-    EXPECT_LT((analytic.by_target - by_target).norm(), 1e-6 * (1 + by_target.norm())) << "run " << run;
-    EXPECT_LT((analytic.by_inverse_depth - by_inverse_depth).norm(), 1e-6 * (1 + by_inverse_depth.norm()))
-        << "run " << run;
+    Matrix23d numeric;
+    for (int i = 0; i < 3; ++i) {
+      Eigen::Vector2d ahead, behind;
+      ASSERT_TRUE(sightResidual(camera, measured, target, seen + kStep * Eigen::Vector3d::Unit(i), ahead, nullptr));
+      ASSERT_TRUE(sightResidual(camera, measured, target, seen - kStep * Eigen::Vector3d::Unit(i), behind, nullptr));
+      numeric.col(i) = (ahead - behind) / (2 * kStep);
+    }
+    EXPECT_LT((analytic - numeric).norm(), 1e-6 * (1 + numeric.norm())) << "run " << run;
   }
 }
 
-TEST_P(ReprojectionOfModel, BundleAndPoseResidualsAgree) {
+TEST_P(ReprojectionOfModel, SightAndPoseResidualsAgree) {
   Random random(4);
   const Camera camera = testCamera(GetParam());
   for (int run = 0; run < 200; ++run) {
@@ -112,12 +104,13 @@ TEST_P(ReprojectionOfModel, BundleAndPoseResidualsAgree) {
     const Pose host = forwardPose(random), target = forwardPose(random);
     const Eigen::Vector3d host_bearing = bearing(camera, {uniform(random, 200, 440), uniform(random, 150, 330)});
     const double inverse_depth = uniform(random, 0.1, 0.5);
-    Eigen::Vector2d by_bundle, by_pose;
-    ASSERT_TRUE(bundleResidual(camera, measured, cameraFrame(host), cameraFrame(target), host_bearing, inverse_depth,
-                               by_bundle, nullptr));
+    Eigen::Vector2d by_sight, by_pose;
+    ASSERT_TRUE(sightResidual(camera, measured, cameraFrame(target),
+                              sight(cameraFrame(host), cameraFrame(target), host_bearing, inverse_depth), by_sight,
+                              nullptr));
     ASSERT_TRUE(
         poseResidual(camera, measured, cameraFrame(target), host * (host_bearing / inverse_depth), by_pose, nullptr));
-    EXPECT_LT((by_bundle - by_pose).norm(), 1e-7 * (1 + by_pose.norm()));
+    EXPECT_LT((by_sight - by_pose).norm(), 1e-7 * (1 + by_pose.norm()));
   }
 }
 

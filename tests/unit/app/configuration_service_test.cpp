@@ -31,6 +31,14 @@ const char* const whole =
     "  most_megabytes: 100\n"
     "  kept_free_megabytes: 50\n"
     "scale:\n"
+    "  source: odometry\n"
+    "  camera_height_m: 0.42\n"
+    "  camera_height_sigma_m: 0.02\n"
+    "  ground_tilt_deg: 5\n"
+    "  odometry_channel: WHEELS\n"
+    "  odometry_sigma: 0.03\n"
+    "  odometry_sigma_per_metre: 0.1\n"
+    "  odometry_window_m: 0.4\n"
     "  largest_sigma: 0.2\n"
     "  metres_per_unit: 1.5\n"
     "  sigma: 0.01\n";
@@ -48,6 +56,14 @@ TEST(ConfigurationService, ReadsEveryKey) {
   EXPECT_TRUE(service.records_from_start);
   EXPECT_EQ(read(whole).settings.recording.most_megabytes, 100);
   EXPECT_EQ(read(whole).settings.recording.kept_free_megabytes, 50);
+  EXPECT_EQ(service.scale.source, "odometry");
+  EXPECT_EQ(service.scale.height.camera_height_m, 0.42);
+  EXPECT_EQ(service.scale.height.sigma_m, 0.02);
+  EXPECT_EQ(service.scale.height.largest_tilt_deg, 5);
+  EXPECT_EQ(service.scale.odometry.channel, "WHEELS");
+  EXPECT_EQ(service.scale.odometry.sigma, 0.03);
+  EXPECT_EQ(service.scale.odometry.sigma_per_metre, 0.1);
+  EXPECT_EQ(service.scale.odometry.window_m, 0.4);
   EXPECT_EQ(service.scale.largest_sigma, 0.2);
   EXPECT_EQ(service.scale.metres_per_unit, 1.5);
   EXPECT_EQ(service.scale.sigma, 0.01);
@@ -70,6 +86,14 @@ TEST(ConfigurationService, WhatIsWrongIsToldByLineAndKey) {
   expectRefused("map:\n  file: ''\n", "2", "map.file: a text is expected");
   expectRefused("recording:\n  most_megabytes: 0\n", "2", "recording.most_megabytes: 0 is out of range");
   expectRefused("scale:\n  metres_per_unit: nan\n", "2", "scale.metres_per_unit");
+  expectRefused("scale:\n  source: wheels\n", "2",
+                "scale.source: 'wheels' is no source; expected none, camera_height or odometry");
+  expectRefused("scale:\n  source: camera_height\n", "2", "camera_height needs scale.camera_height_m");
+  expectRefused("scale:\n  source: odometry\n", "2", "odometry needs scale.odometry_channel");
+  expectRefused("scale:\n  source: odometry\n  odometry_channel: my wheels\n", "2", "scale.odometry_channel: ");
+  expectRefused("scale:\n  source: odometry\n  odometry_channel: SLAM_POSE\n", "2", "is named twice");
+  expectRefused("scale:\n  odometry_window_m: 0\n", "2", "scale.odometry_window_m: 0 is out of range");
+  expectRefused("scale:\n  camera_height_m: -1\n", "2", "scale.camera_height_m: -1 is out of range");
   expectRefused("lcm:\n  ttl: 256\n", "2", "lcm.ttl: 256 is out of range");
   expectRefused("lcm:\n  url: nonsense\n", "2", "lcm: ");
   expectRefused("lcm:\n  pose_channel: SLAM_STATE\n", "2", "lcm: ");

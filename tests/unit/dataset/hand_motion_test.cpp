@@ -105,7 +105,7 @@ TEST_P(Scenes, ShakingIsViolentAndEndsWhereItShould) {
 
 INSTANTIATE_TEST_SUITE_P(All, Scenes,
                          testing::Values(SceneKind::panels, SceneKind::panels_textured, SceneKind::room,
-                                         SceneKind::corridor),
+                                         SceneKind::corridor, SceneKind::corridor_tiled),
                          [](const auto& scene) { return sceneName(scene.param); });
 
 TEST(CorridorMotion, ReturnsToItsStartAfterALap) {

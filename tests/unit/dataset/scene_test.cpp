@@ -40,7 +40,7 @@ TEST_P(SceneKinds, EverySurfaceGetsSomeLight) {
 
 INSTANTIATE_TEST_SUITE_P(All, SceneKinds,
                          testing::Values(SceneKind::panels, SceneKind::panels_textured, SceneKind::room,
-                                         SceneKind::corridor),
+                                         SceneKind::corridor, SceneKind::corridor_tiled),
                          [](const auto& scene) { return sceneName(scene.param); });
 
 TEST(SceneLighting, NeighbouringPanelsDifferInBrightness) {

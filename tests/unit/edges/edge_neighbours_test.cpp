@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "edges/thinning.h"
 #include "unit/edges/synthetic_image.h"
@@ -43,6 +44,34 @@ TEST(EdgeNeighbours, AreThoseOfTheReferenceOnEveryTarget) {
     }
   });
   EXPECT_GT(chosen, 5000U);
+}
+
+TEST(EdgeNeighbours, OnlyMutualOnesStayAsByTheReferenceOnEveryTarget) {
+  onEveryTarget([&] {
+    std::mt19937 random(4);
+    for (const int count : {0, 1, 3, 7, 8, 17, 64, 65, 1000}) {
+      std::vector<int> ahead, behind;
+      for (int i = 0; i < count; ++i) {
+        const int kind = static_cast<int>(random() % 4);
+        const int other = static_cast<int>(random() % static_cast<unsigned>(count));
+        ahead.push_back(kind == 0 ? -1 : kind == 1 ? kNotNamed : kind == 2 ? other : (i + 1) % count);
+        behind.push_back(kind == 0 ? other : kind == 1 ? -1 : (i + count - 1) % count);
+      }
+      std::vector<int> expected_ahead = ahead, expected_behind = behind;
+      keepMutual(ahead, behind);
+      keepMutualReference(expected_ahead, expected_behind);
+      EXPECT_EQ(ahead, expected_ahead);
+      EXPECT_EQ(behind, expected_behind);
+      for (size_t i = 0; i < ahead.size(); ++i) {
+        if (ahead[i] >= 0) {
+          EXPECT_EQ(behind[static_cast<size_t>(ahead[i])], static_cast<int>(i));
+        }
+        if (behind[i] >= 0) {
+          EXPECT_EQ(ahead[static_cast<size_t>(behind[i])], static_cast<int>(i));
+        }
+      }
+    }
+  });
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST(FrameStatistics, IsBoundedWhereNobodyAsks) {
 }
 
 TEST(StatusMessage, TellsWhatItIsGiven) {
-  const PublisherStatus status{1, "1.2.3", 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, true, ""};
+  const PublisherStatus status{1, "1.2.3", 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, true, "", "no ground"};
   const FrameFigures figures{TrackingState::relocalised, "found", 30.5, 29.5, 15, 25};
   const status_t message = statusMessage(status, figures, {13, 14, 15, 16}, {17, 51.5}, 18, 19);
   EXPECT_EQ(message.utime, 19);
@@ -67,6 +67,7 @@ TEST(StatusMessage, TellsWhatItIsGiven) {
   EXPECT_EQ(message.state, state_t::RELOCALISED);
   EXPECT_EQ(message.reason, "found");
   EXPECT_EQ(message.version, "1.2.3");
+  EXPECT_EQ(message.scale_reason, "no ground");
   EXPECT_EQ(message.frames_per_second, 30.5);
   EXPECT_EQ(message.poses_per_second, 29.5);
   EXPECT_EQ(message.latency_p50_ms, 15);

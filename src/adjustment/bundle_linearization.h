@@ -1,0 +1,60 @@
+// The normal equations of a bundle adjustment with the inverse depths eliminated, which leaves a system in the free
+// cameras' poses alone (Triggs et al., Bundle Adjustment - A Modern Synthesis, 2000, section 6.1). A depth is one
+// unknown, so its block is a number, and eliminating it a division.
+//
+// Every camera's motion is described by a twist [v; w] about one common origin o, world axes: a point X goes to
+// X + v + w x (X - o). Then a residual depends on the difference of the host's and the target's twist only, and one
+// derivative serves both. With z = R_h f + rho (c_h - o), the sight changes by rho v + w x z.
+#pragma once
+
+#include <vector>
+
+#include "adjustment/bundle_structure.h"
+
+namespace edgeslam {
+
+// What is adjusted.
+struct BundleState {
+  std::vector<Eigen::Quaterniond> rotations;  // world_R_camera of every camera
+  std::vector<CameraFrame> frames;            // the same, with the centres
+  std::vector<double> inverse_depths;         // of the structure's points
+};
+
+// Whitened norm that an observation behind its camera counts with, without pulling at anything: enough that no step is
+// taken for bringing points there, little enough that a single point does not forbid a step.
+constexpr double behind_norm = 100;
+
+// What is needed of an eliminated point to find its depth again.
+struct EliminatedPoint {
+  Eigen::Vector3d lever;           // z above
+  double inverse_depth = 0;        // rho above
+  double gradient = 0;             // of the cost, by the inverse depth
+  double inverse_information = 0;  // 0: stays where it is
+};
+
+struct BundleLinearization {
+  double cost = 0;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  std::vector<Matrix6d> blocks;     // of the reduced system, twists; undamped but for the depths
+  std::vector<Matrix6d> pairs;      // of the squared difference of a host's and a target's twist, both free
+  std::vector<Matrix6d> diagonal;   // of each unknown: its block as it was before the depths were eliminated
+  Eigen::VectorXd gradient;         // reduced, 6 an unknown
+  Eigen::VectorXd camera_gradient;  // before the depths were eliminated
+  std::vector<EliminatedPoint> points;
+  // Of each observation: how depth and camera motion mix, d^2 cost / (d sight d inverse depth).
+  std::vector<Eigen::Vector3d> mixed;
+};
+
+// Robust cost (half the sum of Huber's losses, and priors) at a state.
+double bundleCost(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber);
+
+// Normal equations at a state, weights frozen there; depths are damped by `damping` times their own information.
+// `linearization.origin` is as the caller sets it.
+void linearizeBundle(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber,
+                     double damping, BundleLinearization& linearization);
+
+// Change of each point's inverse depth that goes with the twists (6 an unknown).
+void changeDepths(const BundleStructure& structure, const BundleLinearization& linearization,
+                  const Eigen::VectorXd& twists, std::vector<double>& changes);
+
+}  // namespace edgeslam

@@ -1,0 +1,65 @@
+// A bundle problem laid out for solving: only what takes part, a point's observations side by side, and for every pair
+// of free cameras that see a point together the place of their block in the reduced system.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "adjustment/bundle_adjustment.h"
+#include "adjustment/reprojection.h"
+
+namespace edgeslam {
+
+struct StructuredObservation {
+  WhitenedPixel measured;
+  int target = 0;   // camera
+  int viewer = -1;  // which of the point's viewers the target is; -1: fixed
+};
+
+// Cameras that are free and bear on a point (its host and its targets) are its viewers.
+struct StructuredPoint {
+  Eigen::Vector3d host_bearing;
+  int index = 0;  // in the problem
+  int host = 0;   // camera
+  bool free = false;
+  int host_viewer = -1;  // -1: fixed
+  int first_observation = 0, end_observation = 0;
+  int first_viewer = 0, end_viewer = 0;
+  int first_block = 0;           // of the blocks of its pairs of viewers, see blockOfPair()
+  double prior_information = 0;  // 1 / prior_sigma^2; 0: no prior
+  double prior_inverse_depth = 0;
+};
+
+// A 6x6 block of the reduced system, row >= column: indices of unknowns.
+struct BlockPlace {
+  int row = 0, column = 0;
+};
+
+struct BundleStructure {
+  std::vector<StructuredPoint> points;
+  std::vector<StructuredObservation> observations;
+  std::vector<int> viewers;            // unknown of each viewer of each point, ascending within a point
+  std::vector<int> blocks;             // block of each pair of viewers of each point
+  std::vector<int> camera_of_unknown;  // cameras that are free and observed, ascending
+  std::vector<BlockPlace> places;      // of each block, by column, then row; all diagonal blocks are there
+  bool dense = false;                  // all blocks of the lower triangle are there
+
+  // Kept between calls for their memory.
+  std::vector<int> first_of_point, order, unknown_of_camera;
+  std::vector<std::int64_t> pairs;
+};
+
+// Where in `blocks` a point's pair of viewers stands, counted from its first; `row` >= `column`.
+inline int blockOfPair(int row, int column) { return row * (row + 1) / 2 + column; }
+
+// True where nothing of it keeps an adjustment from using it: all numbers, sigmas and depths over 0.
+bool usable(const BundlePoint& point);
+bool usable(const Measurement& measurement);
+
+// Indices must be in range. Takes out observations without effect (by the point's own host, of or by what is not
+// usable, or where nothing is free), and points that have none left. Up to `most_dense` free cameras the reduced system
+// has all its blocks.
+void structureBundle(const BundleProblem& problem, int most_dense, BundleStructure& structure);
+
+}  // namespace edgeslam

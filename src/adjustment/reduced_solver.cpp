@@ -1,0 +1,114 @@
+#include "adjustment/reduced_solver.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace edgeslam {
+namespace {
+
+// Entries of the diagonal less than this are damped as if they were this.
+constexpr double kLeastInformation = 1e-6;
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+// With d from the origin to the centre c, the twist of a step [c'; w] is v = c' + d x w. These bring a block from
+// twists to such steps.
+void toStepsOfColumn(const Eigen::Vector3d& lever, Matrix6d& block) {
+  block.rightCols<3>().noalias() += block.leftCols<3>() * skew(lever);
+}
+void toStepsOfRow(const Eigen::Vector3d& lever, Matrix6d& block) {
+  block.bottomRows<3>().noalias() -= skew(lever) * block.topRows<3>();
+}
+
+}  // namespace
+
+void ReducedSolver::prepare(const BundleStructure& structure) {
+  const auto size = static_cast<Eigen::Index>(6 * structure.camera_of_unknown.size());
+  if (structure.dense) {
+    dense_.resize(size, size);
+    return;
+  }
+  sparse_.resize(size, size);
+  sparse_.setZero();
+  std::vector<int> entries(at(static_cast<int>(size)), 0);
+  for (const BlockPlace& place : structure.places) {
+    for (int j = 0; j < 6; ++j) entries[at(6 * place.column + j)] += place.row == place.column ? 6 - j : 6;
+  }
+  sparse_.reserve(entries);
+  for (const BlockPlace& place : structure.places) {
+    for (int j = 0; j < 6; ++j) {
+      for (int i = place.row == place.column ? j : 0; i < 6; ++i)
+        sparse_.insert(6 * place.row + i, 6 * place.column + j) = 0;
+    }
+  }
+  sparse_.makeCompressed();
+  factor_.analyzePattern(sparse_);
+}
+
+bool ReducedSolver::solve(const BundleStructure& structure, const BundleState& state,
+                          const BundleLinearization& linearization, double damping, CameraStep& step) {
+  const std::size_t unknowns = structure.camera_of_unknown.size();
+  levers_.resize(unknowns);
+  step.changes.resize(linearization.gradient.size());
+  for (std::size_t k = 0; k < unknowns; ++k) {
+    levers_[k] = state.frames[at(structure.camera_of_unknown[k])].centre - linearization.origin;
+    const auto gradient = linearization.gradient.segment<6>(static_cast<Eigen::Index>(6 * k));
+    step.changes.segment<3>(static_cast<Eigen::Index>(6 * k)) = -gradient.head<3>();
+    step.changes.segment<3>(static_cast<Eigen::Index>(6 * k + 3)) =
+        levers_[k].cross(Eigen::Vector3d(gradient.head<3>())) - gradient.tail<3>();
+  }
+  blocks_ = linearization.blocks;
+  for (std::size_t b = 0; b < structure.places.size(); ++b) {
+    const BlockPlace place = structure.places[b];
+    toStepsOfColumn(levers_[at(place.column)], blocks_[b]);
+    toStepsOfRow(levers_[at(place.row)], blocks_[b]);
+    if (place.row != place.column) continue;
+    Matrix6d own = linearization.diagonal[at(place.row)];
+    toStepsOfColumn(levers_[at(place.row)], own);
+    toStepsOfRow(levers_[at(place.row)], own);
+    blocks_[b].diagonal() += damping * own.diagonal().cwiseMax(kLeastInformation);
+  }
+  if (!(structure.dense ? solveDense(structure, step.changes) : (fillSparse(structure), solveSparse(step.changes))))
+    return false;
+  step.twists = step.changes;
+  for (std::size_t k = 0; k < unknowns; ++k) {
+    const Eigen::Vector3d turn = step.changes.segment<3>(static_cast<Eigen::Index>(6 * k + 3));
+    step.twists.segment<3>(static_cast<Eigen::Index>(6 * k)) += levers_[k].cross(turn);
+  }
+  return step.changes.allFinite();
+}
+
+bool ReducedSolver::solveDense(const BundleStructure& structure, Eigen::VectorXd& solution) {
+  for (std::size_t b = 0; b < structure.places.size(); ++b) {
+    dense_.block<6, 6>(6 * structure.places[b].row, 6 * structure.places[b].column) = blocks_[b];
+  }
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(dense_);
+  if (factor.info() != Eigen::Success) return false;
+  factor.solveInPlace(solution);
+  return true;
+}
+
+bool ReducedSolver::solveSparse(Eigen::VectorXd& solution) {
+  factor_.factorize(sparse_);
+  if (factor_.info() != Eigen::Success) return false;
+  solution = factor_.solve(solution).eval();
+  return true;
+}
+
+// Blocks stand by column, then row, beginning with the diagonal's: the order of the values.
+void ReducedSolver::fillSparse(const BundleStructure& structure) {
+  double* value = sparse_.valuePtr();
+  std::size_t first = 0;
+  while (first < structure.places.size()) {
+    std::size_t end = first;
+    while (end < structure.places.size() && structure.places[end].column == structure.places[first].column) ++end;
+    for (int j = 0; j < 6; ++j) {
+      for (std::size_t b = first; b < end; ++b) {
+        for (int i = b == first ? j : 0; i < 6; ++i) *value++ = blocks_[b](i, j);
+      }
+    }
+    first = end;
+  }
+}
+
+}  // namespace edgeslam
