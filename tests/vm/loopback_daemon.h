@@ -23,6 +23,14 @@ inline std::string environment(const char* name) {
   return value ? value : "";
 }
 
+// Little work: the processors are emulated.
+constexpr const char* little_work =
+    "points: {count: 150}\n"
+    "bundle: {iterations: 3}\n"
+    "adjustment: {free_keyframes: 4, fixed_keyframes: 6}\n"
+    "initialisation: {frames_between: 4, attempt_interval: 10}\n"
+    "keyframes: {interval_s: 2}\n";
+
 // A recording with ground truth, in memory.
 struct FedSequence {
   std::string folder;
@@ -58,7 +66,7 @@ class LoopbackDaemon : public OwnNetwork {
   std::unique_ptr<BackgroundProcess> start(const FedSequence& sequence, std::vector<std::string> options = {}) {
     const std::string configuration =
         folder_.write("robot.yaml", "camera: {calibration: " + sequence.folder + "/camera.yaml}\n" +
-                                        "capture: {device: " + device_ + "}\n");
+                                        "capture: {device: " + device_ + "}\n" + little_work);
     options.insert(options.begin(), {EDGESLAM_PROGRAM, "run", "--config", configuration});
     return std::make_unique<BackgroundProcess>(options);
   }

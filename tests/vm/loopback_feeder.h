@@ -21,12 +21,12 @@
 namespace edgeslam {
 
 enum class FeedingOrder {
-  once,            // to the last one, then no more
+  once,            // to the last one, which stays
   around,          // from the last one on to the first
   there_and_back,  // backwards from the last one: the scene never jumps
 };
 
-// The index of the n-th frame that is fed, of `count`; -1: none.
+// The index of the n-th frame that is fed, of `count`; -1: none is left.
 inline std::int64_t fedIndex(FeedingOrder order, std::int64_t n, std::int64_t count) {
   if (order == FeedingOrder::once) return n < count ? n : -1;
   if (order == FeedingOrder::around || count < 2) return n % count;
@@ -75,7 +75,7 @@ class LoopbackFeeder {
   void cover(bool covered) { covered_ = covered; }
   // How far it came in the order of the frames: the number of the latest one, from 0.
   std::int64_t position() const { return position_; }
-  // Of `once`: no frame is left.
+  // Of `once`: the last frame was written.
   bool ended() const { return indexAt(position_ + 1) < 0; }
 
  private:
@@ -97,10 +97,9 @@ class LoopbackFeeder {
     auto due = std::chrono::steady_clock::now();
     while (!stop_) {
       std::this_thread::sleep_until(due += interval_);
-      const std::int64_t next = held_ ? position_.load() : position_ + 1;
-      const std::int64_t index = indexAt(next);
-      if (paused_ || index < 0) continue;
-      if (write(covered_ ? dark : frames_[static_cast<std::size_t>(index)])) position_ = next;
+      if (paused_) continue;
+      const std::int64_t next = held_ || ended() ? position_.load() : position_ + 1;
+      if (write(covered_ ? dark : frames_[static_cast<std::size_t>(indexAt(next))])) position_ = next;
     }
   }
 

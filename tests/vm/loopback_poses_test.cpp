@@ -3,6 +3,7 @@
 #include <array>
 #include <opencv2/core.hpp>
 
+#include "app/configuration.h"
 #include "dataset/recording_source.h"
 #include "drivers/lcm/messages.h"
 #include "pipeline/lockstep_run.h"
@@ -22,7 +23,7 @@ class LoopbackPoses : public LoopbackDaemon {
     ASSERT_TRUE(hears([](const Heard& heard) { return heard.states.size() > 5; })) << daemon->said();
     feeder->hold(false);
     ASSERT_TRUE(comesTrue([&] { return feeder->ended(); }, patience_s));
-    std::this_thread::sleep_for(std::chrono::seconds(1));
+    std::this_thread::sleep_for(std::chrono::seconds(3));
     daemon->send(SIGTERM);
     ASSERT_EQ(daemon->exitCode(), 0) << daemon->said();
     heard_ = robot_->heard();
@@ -30,7 +31,7 @@ class LoopbackPoses : public LoopbackDaemon {
   }
 
   // By the number of the frame in the stream, its place in the sequence; told by its bytes. Not of those that came
-  // while the first one was held.
+  // while the first and the last one were held.
   std::map<std::int64_t, std::size_t> placesOf(const FedSequence& sequence) const {
     std::map<std::int64_t, std::size_t> places;
     RecordingSource source(readRecording(recording_));
@@ -41,7 +42,7 @@ class LoopbackPoses : public LoopbackDaemon {
         ++place;
       EXPECT_LT(place, sequence.frames.size()) << "frame " << frame->index << " is none of those fed, or out of order";
       if (place >= sequence.frames.size()) break;
-      if (place > 0) places[frame->index] = place;
+      if (place > 0 && (place > next || place + 1 < sequence.frames.size())) places[frame->index] = place;
       next = place;
     }
     return places;
@@ -62,7 +63,7 @@ std::map<std::int64_t, FrameRecord> repeated(const std::string& folder) {
     decisions.corrections[applied.message].push_back(applied.number);
     decisions.snapshots.insert(applied.number);
   }
-  LockstepRun run(recording.camera, Settings(), 0, 0);
+  LockstepRun run(recording.camera, readConfiguration(recording.configuration_path).settings, 0, 0);
   run.repeat(decisions);
   std::map<std::int64_t, FrameRecord> records;
   RecordingSource source(std::move(recording));
@@ -117,7 +118,6 @@ TEST_P(LoopbackPosesOf, AreThoseOfReplayingTheSameFramesToTheLastBit) {
   for (const auto& [frame, place] : places) {
     ASSERT_EQ(frame - static_cast<std::int64_t>(place), offset) << "frame " << frame;
   }
-  EXPECT_EQ(places.rbegin()->second, sequence.frames.size() - 1) << "the last one fed is the last one taken";
 
   // The poses published are those of the run computed anew, to the bit.
   const std::map<std::int64_t, FrameRecord> again = repeated(recording_);
@@ -133,6 +133,8 @@ TEST_P(LoopbackPosesOf, AreThoseOfReplayingTheSameFramesToTheLastBit) {
   }
   EXPECT_EQ(different, 0);
 
+  ASSERT_GT(same, 0) << "no map came to stand";
+
   // And those that `edgeslam replay` writes, to all digits of its file.
   const std::string result = folder_.path("result");
   const Outcome replay = runProgram({"replay", recording_, "--output", result, "--drawings", "0"});
@@ -147,6 +149,7 @@ TEST_P(LoopbackPosesOf, AreThoseOfReplayingTheSameFramesToTheLastBit) {
   }
 
   std::size_t compared = 0;
+  ASSERT_GT(published.size(), sequence.frames.size() / 4);
   const double error_m = errorOf(heard_.states, places, sequence, compared);
   std::cout << sequence.frames.size() << " frames fed at " << fed.frames_per_second << "/s: " << counted
             << " counted by the driver, " << lost_by_driver << " lost there, " << totals.frames_captured - taken
@@ -158,8 +161,8 @@ TEST_P(LoopbackPosesOf, AreThoseOfReplayingTheSameFramesToTheLastBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sequences, LoopbackPosesOf,
-                         testing::Values(FedThrough{"Simulated", "EDGESLAM_SEQUENCE", 10, 1000, 0.02},
-                                         FedThrough{"Shared", "EDGESLAM_SHARED_SEQUENCE", 3, 150, 0.05}),
+                         testing::Values(FedThrough{"Simulated", "EDGESLAM_SEQUENCE", 3, 1000, 0.02},
+                                         FedThrough{"Shared", "EDGESLAM_SHARED_SEQUENCE", 1.5, 120, 0.05}),
                          [](const auto& fed) { return fed.param.name; });
 
 }  // namespace

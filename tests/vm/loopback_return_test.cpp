@@ -1,4 +1,5 @@
 // The daemon's camera is taken away and comes back, in a virtual machine: feeder and driver.
+#include "system/program.h"
 #include "vm/loopback_daemon.h"
 #include "vm/vivid_device.h"
 
@@ -82,7 +83,13 @@ TEST_F(LoopbackReturn, ADriverThatIsUnloadedAndLoadedAgain) {
   ASSERT_TRUE(comesTrue([&] { return feeder->position() > 100; }, patience_s));
   feeder.reset();
   // It is in use while the daemon tries to open it: between two tries.
-  ASSERT_TRUE(comesTrue([] { return runsWell("rmmod v4l2loopback"); }, patience_s)) << daemon->said();
+  Outcome unloaded;
+  ASSERT_TRUE(comesTrue(
+      [&] {
+        return (unloaded = runCommand({"rmmod", "v4l2loopback"})).exit_code == 0;
+      },
+      patience_s))
+      << unloaded.messages << daemon->said();
   EXPECT_TRUE(statusTells("not plugged in")) << daemon->said();
   std::this_thread::sleep_for(std::chrono::seconds(5));
 

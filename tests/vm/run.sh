@@ -65,7 +65,7 @@ boot() {
 sequence=$cache/sequence
 shared_sequence=$(realpath -m "$here/../../../shared/data/tex_near")
 [[ -e $shared_sequence ]] || shared_sequence=""
-"$(dirname "$program")/edgeslam" simulate panels_textured --width 320 --height 240 --frames 150 --fps 10 --speed 0.3 \
+"$(dirname "$program")/edgeslam" simulate panels_textured --width 160 --height 120 --frames 150 --fps 10 --speed 0.3 \
   --output "$sequence" --force > /dev/null 2>&1
 
 options=("$@")

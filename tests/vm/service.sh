@@ -22,8 +22,9 @@ get_kernel "$abi"
 build_loopback "$abi"
 make_root "$build/edgeslam" "$cache/debian.img"
 
-"$build/edgeslam" simulate panels_textured --width 320 --height 240 --frames 150 --fps 10 --speed 0.3 \
-  --output "$cache/sequence" --force > /dev/null 2>&1
+"$build/edgeslam" simulate panels_textured --width 160 --height 120 --frames 150 --fps 10 --speed 0.3 \
+  --output "$cache/service_sequence" --force > /dev/null 2>&1
+make_map "$build" "$cache/service_sequence"
 install_project "$build" "$cache/installation"
 install_checks "$build" "$cache/installation"
 
@@ -36,5 +37,5 @@ rm -rf "$cache/results"
 mkdir "$cache/results"
 mapfile -t folders < <(share installation "$cache/installation" readonly=on; share results "$cache/results")
 start_machine 1500 "$cache/kernel-$abi" "$abi" "$first" "systemd.show_status=no systemd.log_target=journal" -m 1536 \
-  -drive "file=$cache/debian.img,format=raw,if=virtio,snapshot=on" "${folders[@]}" | tee "$cache/service_output.txt"
+  -drive "file=$cache/debian.img,format=raw,if=virtio,snapshot=on" "${folders[@]}" | sed -u 's|\r$||' | tee "$cache/service_output.txt" | grep --line-buffered -E '^(ok|FAILED|--|service checks| {8})' || true
 grep -q '^service checks: all passed' "$cache/service_output.txt"

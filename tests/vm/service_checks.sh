@@ -13,11 +13,12 @@ prepare() {
 
 starts_with_the_computer() {
   echo "-- start"
-  check "started at boot, and ready before there is a picture" eventually 60 unit_is active
+  check "started at boot, and ready before there is a camera" eventually 120 unit_is active
   check "by its own word" is_property Type notify
-  check "a camera without a picture is told" eventually 30 heard '^SLAM_STATUS .*lost: '
+  check "that there is none is told" hears 30 '^SLAM_STATUS .*lost: .*/dev/video42'
+  plug_in
   feed
-  check "the picture comes, and a map" hears 90 '^SLAM_STATE .* tracking, at '
+  check "it is plugged in: the camera is found in the map" tracks 120
   mark
   check "poses" hears 10 '^SLAM_POSE t '
   check "odometry" hears 10 '^SLAM_REL_ODOMETRY .*valid'

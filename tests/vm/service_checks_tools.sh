@@ -13,6 +13,7 @@ check() {
   else
     failures=$((failures + 1))
     echo "FAILED  $text${measured:+ ($measured)}"
+    journalctl --quiet --output cat --unit edgeslam | grep '^edgeslam: ' | tail -4 | sed 's/^/        /'
   fi
 }
 
@@ -71,11 +72,21 @@ remember_process() {
   restarts_before=$(property NRestarts)
 }
 
+# The camera is there, without a picture before feed().
+plug_in() {
+  insmod modules/v4l2loopback.ko video_nr=42 exclusive_caps=0 card_label=Loopback
+  udevadm settle
+}
 feed() {
   ./feed_loopback /dev/video42 sequence 10 > feeder.txt 2>&1 &
   feeder=$!
 }
-end_feed() {
+end_# The camera is there, without a picture before feed().
+plug_in() {
+  insmod modules/v4l2loopback.ko video_nr=42 exclusive_caps=0 card_label=Loopback
+  udevadm settle
+}
+feed() {
   kill "$feeder"
   wait "$feeder"
 }

@@ -41,8 +41,7 @@ outlives_the_camera() {
   check "the status tells that, too" hears 20 '^SLAM_STATUS .*lost: .*(no such|not plugged)'
   sleep $longer_than_the_watchdog
   check "it waits, and is not restarted" same_process
-  insmod modules/v4l2loopback.ko video_nr=42 exclusive_caps=0 card_label=Loopback
-  udevadm settle
+  plug_in
   feed
   check "it comes back, and tracks" tracks 90
   check "it was found again in its map" found_again

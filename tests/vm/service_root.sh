@@ -32,6 +32,13 @@ make_root() {
   echo "$packages" > "$2.packages"
 }
 
+# make_map BUILD SEQUENCE: that the service goes on with; an emulated processor takes long to begin one.
+make_map() {
+  cp "$here/service_robot.yaml" "$2/robot.yaml"
+  "$1/edgeslam" replay "$2" --config "$2/robot.yaml" --output "$cache/service_replay" --drawings 0 --map-out "$2/robot.map" \
+    > "$cache/service_replay.log" 2>&1 || { tail "$cache/service_replay.log" >&2; exit 2; }
+}
+
 # install_project BUILD FOLDER: the release as `cmake --install` puts it on a robot, a robot's configuration, and enabled.
 install_project() {
   rm -rf "$2"
@@ -46,8 +53,10 @@ install_checks() {
   local checks=$2/opt/checks
   mkdir -p "$checks"
   cp "$1/feed_loopback" "$1/stall_thread" "$here"/service_checks*.sh "$checks/"
-  cp -r "$cache/sequence" "$checks/"
-  cp "$cache/sequence/camera.yaml" "$2/etc/edgeslam/camera.yaml"
+  cp -r "$cache/service_sequence" "$checks/sequence"
+  cp "$cache/service_sequence/camera.yaml" "$2/etc/edgeslam/camera.yaml"
+  mkdir -p "$2/var/lib/edgeslam"
+  cp "$cache/service_sequence/robot.map" "$2/var/lib/edgeslam/"
   cat > "$2/etc/systemd/system/checks.service" <<'UNIT'
 [Unit]
 Description=Checks of the service
