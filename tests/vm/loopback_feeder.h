@@ -42,7 +42,7 @@ class LoopbackFeeder {
       : frames_(std::move(frames)),
         order_(order),
         interval_(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / frames_per_second))) {
-    file_ = ::open(device.c_str(), O_RDWR);
+    file_ = ::open(device.c_str(), O_RDWR | O_CLOEXEC);
     if (file_ < 0) throw std::runtime_error(device + ": " + std::strerror(errno));
     v4l2_format format{};
     format.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
