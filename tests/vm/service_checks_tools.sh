@@ -64,8 +64,10 @@ same_process() {
   [[ $(process) == "$before" && $(property NRestarts) == "$restarts_before" ]]
 }
 restarted() {
-  measured="NRestarts $restarts_before, now $(property NRestarts); process $before, now $(process)"
-  [[ $(property NRestarts) == $((restarts_before + 1)) && $(process) != "$before" && $(process) != 0 ]]
+  local now
+  now=$(process)
+  measured="NRestarts $restarts_before, now $(property NRestarts); process $before, now $now"
+  [[ $(property NRestarts) == $((restarts_before + 1)) && $now != "$before" && $now != 0 ]]
 }
 remember_process() {
   before=$(process)
