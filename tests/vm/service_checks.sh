@@ -7,6 +7,8 @@ source ./service_checks_trouble.sh
 
 prepare() {
   ip route add 224.0.0.0/4 dev lo
+  mkdir -p /mnt/results
+  mount -t 9p -o trans=virtio,version=9p2000.L results /mnt/results
   edgeslam listen > heard.txt 2> listener.txt &
   mark
 }
@@ -68,19 +70,18 @@ told_wrong_configuration() {
   systemctl stop edgeslam
 }
 
+# For those who look into a failure, on the host.
+keep_results() {
+  journalctl --quiet --output short-precise > /mnt/results/journal.txt
+  cp heard.txt listener.txt feeder.txt /mnt/results/
+}
+
 prepare
-starts_with_the_computer
-is_confined
-is_not_restarted_for_a_covered_lens
-outlives_the_camera
-is_restarted_when_it_stalls
-ends
-told_wrong_configuration
-outlives_an_unplugged_camera
-mkdir -p /mnt/results
-mount -t 9p -o trans=virtio,version=9p2000.L results /mnt/results
-journalctl --quiet --output short-precise > /mnt/results/journal.txt
-cp heard.txt listener.txt feeder.txt /mnt/results/
+for part in starts_with_the_computer is_confined is_not_restarted_for_a_covered_lens outlives_the_camera \
+  is_restarted_when_it_stalls ends told_wrong_configuration outlives_an_unplugged_camera; do
+  $part
+  keep_results
+done
 umount /mnt/results
 if ((failures == 0)); then
   echo "service checks: all passed, $checks"

@@ -79,7 +79,7 @@ outlives_an_unplugged_camera() {
   check "udev gives it a name by its place" test -e $vivid
   sed -i "s|/dev/video42|$vivid, width: 320, height: 180, frame_rate: 10|; s|calibration: .*|calibration: vivid.yaml|" \
     /etc/edgeslam/robot.yaml
-  sed 's/^height: .*/height: 180/' /etc/edgeslam/camera.yaml > /etc/edgeslam/vivid.yaml
+  sed 's/^width: .*/width: 320/; s/^height: .*/height: 180/' /etc/edgeslam/camera.yaml > /etc/edgeslam/vivid.yaml
   black "$(v4l2-ctl --device $vivid --list-ctrls-menus | grep -i '100% black' | head -1 | cut -d: -f1)"
   mark
   check "starts" systemctl start edgeslam
