@@ -161,8 +161,8 @@ TEST_P(LoopbackPosesOf, AreThoseOfReplayingTheSameFramesToTheLastBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sequences, LoopbackPosesOf,
-                         testing::Values(FedThrough{"Simulated", "EDGESLAM_SEQUENCE", 3, 1000, 0.02},
-                                         FedThrough{"Shared", "EDGESLAM_SHARED_SEQUENCE", 1.5, 120, 0.05}),
+                         testing::Values(FedThrough{"Simulated", "EDGESLAM_SEQUENCE", 2, 1000, 0.02},
+                                         FedThrough{"Shared", "EDGESLAM_SHARED_SEQUENCE", 1, 120, 0.05}),
                          [](const auto& fed) { return fed.param.name; });
 
 }  // namespace
