@@ -50,6 +50,7 @@ is_confined() {
   check "nor any memory" refused_there 'exec 3< /dev/mem'
   ip route add 192.0.2.1/32 dev lo
   check "multicast can be sent there" in_its_place 'echo > /dev/udp/239.255.76.67/7000'
+  check "and heard there" in_its_place 'timeout 60 edgeslam listen --count 1 > /dev/null'
   check "to a computer elsewhere it cannot" refused_there 'echo > /dev/udp/192.0.2.1/7000'
   check "threads with real-time priority" real_time_threads
   check "memory is locked" status_line VmLck ' *[1-9][0-9]* kB'

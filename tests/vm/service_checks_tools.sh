@@ -83,12 +83,7 @@ feed() {
   ./feed_loopback /dev/video42 sequence 10 > feeder.txt 2>&1 &
   feeder=$!
 }
-end_# The camera is there, without a picture before feed().
-plug_in() {
-  insmod modules/v4l2loopback.ko video_nr=42 exclusive_caps=0 card_label=Loopback
-  udevadm settle
-}
-feed() {
+end_feed() {
   kill "$feeder"
   wait "$feeder"
 }

@@ -20,6 +20,7 @@ is_not_restarted_for_a_covered_lens() {
 told_in_time() { # PATTERN SECONDS_SINCE_1970
   local told
   told=$(time_said "$1")
+  [[ -n $told ]] || return 1
   measured="after $(awk "BEGIN {print $told - $2}") s: $(tail -1 said.txt)"
   awk "BEGIN {exit !($told - $2 < 0.7)}"  # half a second since a frame was due, and what the emulated machine takes
 }
