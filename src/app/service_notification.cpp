@@ -21,7 +21,12 @@ void ServiceNotification::tell(const std::string& state) {
 
 void ServiceNotification::ready() { tell("READY=1"); }
 
-void ServiceNotification::stopping() { tell("STOPPING=1"); }
+// The watchdog has nothing to watch any more, but would end a map that is long to write: the stop has a time limit of
+// its own (TimeoutStopSec).
+void ServiceNotification::stopping() {
+  const bool is_watched = feeding_interval_ != Clock::duration::zero();
+  tell(is_watched ? "STOPPING=1\nWATCHDOG_USEC=3600000000" : "STOPPING=1");
+}
 
 void ServiceNotification::status(const std::string& text) {
   if (text == status_) return;

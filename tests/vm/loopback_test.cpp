@@ -1,18 +1,14 @@
 // Frames fed through v4l2loopback come out of the driver as they went in, in a virtual machine: run.sh.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <linux/videodev2.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <cstdlib>
 #include <opencv2/core.hpp>
-#include <thread>
 #include <vector>
 
 #include "app/open_camera.h"
 #include "dataset/simulator.h"
 #include "drivers/frame_capture/reopening_camera.h"
+#include "vm/loopback_feeder.h"
 #include "vm/vivid_device.h"
 
 namespace edgeslam {
@@ -20,49 +16,7 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr int width = 160, height = 120;
-
-// Writes frames to the loopback's input at 30/s while it lives.
-class Feeder {
- public:
-  Feeder(const std::string& path, std::vector<cv::Mat> frames) : frames_(std::move(frames)) {
-    file_ = ::open(path.c_str(), O_RDWR);
-    v4l2_format format{};
-    format.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
-    format.fmt.pix.width = width;
-    format.fmt.pix.height = height;
-    format.fmt.pix.pixelformat = V4L2_PIX_FMT_GREY;
-    format.fmt.pix.field = V4L2_FIELD_NONE;
-    format.fmt.pix.bytesperline = width;
-    format.fmt.pix.sizeimage = width * height;
-    EXPECT_EQ(kernel().control(file_, VIDIOC_S_FMT, &format), 0);
-    write(0);
-    thread_ = std::thread([this] { run(); });
-  }
-  ~Feeder() {
-    stop_ = true;
-    thread_.join();
-    close(file_);
-  }
-  void pause(bool paused) { paused_ = paused; }
-
- private:
-  void write(std::size_t i) {
-    const cv::Mat& frame = frames_[i % frames_.size()];
-    EXPECT_EQ(::write(file_, frame.data, frame.total()), static_cast<ssize_t>(frame.total()));
-  }
-  void run() {
-    auto due = std::chrono::steady_clock::now();
-    for (std::size_t i = 1; !stop_;) {
-      std::this_thread::sleep_until(due += std::chrono::milliseconds(33));
-      if (!paused_) write(i++);
-    }
-  }
-
-  std::vector<cv::Mat> frames_;
-  int file_ = -1;
-  std::atomic<bool> stop_{false}, paused_{false};
-  std::thread thread_;
-};
+constexpr double frames_per_second = 30;
 
 std::vector<cv::Mat> sequence(int count) {
   SimulationOptions options;
@@ -87,7 +41,7 @@ const char* loopback() { return std::getenv("EDGESLAM_LOOPBACK"); }
 TEST(Loopback, ASequenceComesOutToTheByteAndInOrder) {
   if (loopback() == nullptr) GTEST_SKIP() << "no v4l2loopback here";
   const std::vector<cv::Mat> frames = sequence(20);
-  const Feeder feeder(loopback(), frames);
+  const LoopbackFeeder feeder(loopback(), frames, frames_per_second, FeedingOrder::around);
   CameraOptions options;
   options.device = loopback();
   options.every_frame = true;
@@ -116,7 +70,7 @@ TEST(Loopback, ASequenceComesOutToTheByteAndInOrder) {
 
 TEST(Loopback, AFrozenStreamIsToldWithinHalfASecondAndComesBack) {
   if (loopback() == nullptr) GTEST_SKIP() << "no v4l2loopback here";
-  Feeder feeder(loopback(), sequence(3));
+  LoopbackFeeder feeder(loopback(), sequence(3), frames_per_second, FeedingOrder::around);
   CameraOptions options;
   options.device = loopback();
   const auto camera = openLastingCamera(options);

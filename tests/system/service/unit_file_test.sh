@@ -26,7 +26,7 @@ systemd-analyze security --offline=yes --no-pager --threshold=30 "$unit" > "$fol
   fail "exposed too much: $(cat "$folder/security")"
 grep "Overall exposure" "$folder/security"
 
-for line in Type=notify WatchdogSec= Restart=always StartLimitIntervalSec=0 LimitMEMLOCK= LimitRTPRIO=; do
+for line in Type=notify WatchdogSec= Restart=always StartLimitIntervalSec=0 RestartPreventExitStatus=2 LimitMEMLOCK= LimitRTPRIO=; do
   grep -q "^$line" "$unit" || fail "$line is missing"
 done
 ! grep -q '^RestrictRealtime=yes' "$unit" || fail "RestrictRealtime would take away the priority that LimitRTPRIO gives"
