@@ -23,11 +23,11 @@ elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^arm")
 endif()
 
 set(CPACK_COMPONENT_EDGESLAM_DESCRIPTION "monocular SLAM on image edges, as a service over LCM
- Edge SLAM tells a robot with one camera where it is, at every frame, also in front
- of bare walls: it follows points on image edges, builds a 3D map of them, and
- publishes a pose with its uncertainty over LCM.
- .
- This package has the command, the service and its configuration.")
+Edge SLAM tells a robot with one camera where it is, at every frame, also in front
+of bare walls: it follows points on image edges, builds a 3D map of them, and
+publishes a pose with its uncertainty over LCM.
+
+This package has the command, the service and its configuration.")
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_NAME edgeslam)
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_RECOMMENDS "libcamera-ipa")
@@ -35,24 +35,23 @@ set(CPACK_DEBIAN_EDGESLAM_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/conffiles
   ${CMAKE_SOURCE_DIR}/packaging/debian/postinst ${CMAKE_SOURCE_DIR}/packaging/debian/prerm
   ${CMAKE_SOURCE_DIR}/packaging/debian/postrm)
-set(CPACK_DEBIAN_EDGESLAM_DEBUGINFO_PACKAGE ON)
 
 set(CPACK_COMPONENT_LIBEDGESLAM0_DESCRIPTION "monocular SLAM on image edges, shared library
- Edge SLAM tells a robot with one camera where it is, at every frame, also in front
- of bare walls: it follows points on image edges, builds a 3D map of them, and
- gives a pose with its uncertainty.
- .
- This package has the library that programs use.")
+Edge SLAM tells a robot with one camera where it is, at every frame, also in front
+of bare walls: it follows points on image edges, builds a 3D map of them, and
+gives a pose with its uncertainty.
+
+This package has the library that programs use.")
 set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_NAME libedgeslam0)
 set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_SECTION libs)
-set(CPACK_DEBIAN_LIBEDGESLAM0_DEBUGINFO_PACKAGE ON)
+set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/triggers)
 
 set(CPACK_COMPONENT_LIBEDGESLAM-DEV_DESCRIPTION "monocular SLAM on image edges, development files
- Edge SLAM tells a robot with one camera where it is, at every frame, also in front
- of bare walls: it follows points on image edges, builds a 3D map of them, and
- gives a pose with its uncertainty.
- .
- This package has the headers and the CMake package to build programs with.")
+Edge SLAM tells a robot with one camera where it is, at every frame, also in front
+of bare walls: it follows points on image edges, builds a 3D map of them, and
+gives a pose with its uncertainty.
+
+This package has the headers and the CMake package to build programs with.")
 set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_NAME libedgeslam-dev)
 set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_DEPENDS "libedgeslam0 (= ${PROJECT_VERSION})")

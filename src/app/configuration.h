@@ -35,7 +35,8 @@ struct Configuration {
   std::string source;  // path of the file; empty for the defaults
 };
 
-// An empty file gives the defaults, or what the file that it includes says. Throws InputError `FILE:LINE: KEY: ...` at the first problem.
+// An empty file gives the defaults; an included file is read first. Throws InputError `FILE:LINE: KEY: ...` at the
+// first problem.
 Configuration readConfiguration(const std::string& path);
 
 // Likewise, but collects all problems, one line each in the order of the file, and throws nothing: where there are any,

@@ -35,7 +35,7 @@ inside apt-get install -qq -y --no-install-recommends systemd > /dev/null 2>&1
 files > "$build/before.txt"
 cp "$build"/packages/*.deb "$root/tmp/"
 arch=$(dpkg --print-architecture)
-inside sh -c "apt-get install -qq -y --no-install-recommends /tmp/edgeslam_*_$arch.deb /tmp/edgeslam-dbgsym_*.deb" > "$build/install.log" 2>&1 ||
+inside sh -c "apt-get install -qq -y --no-install-recommends /tmp/edgeslam_*_$arch.deb" > "$build/install.log" 2>&1 ||
   { tail "$build/install.log"; fail "installation"; }
 check "installed, with $(inside dpkg-query -W | wc -l) packages in all"
 
@@ -67,7 +67,7 @@ inside sh -c "dpkg -i /tmp/edgeslam_*_$arch.deb" > "$build/install.log" 2>&1 || 
 grep -q "^# mine" "$root/etc/edgeslam/robot.yaml" || fail "an upgrade changes the user's configuration"
 check "an upgrade keeps the user's configuration"
 
-inside sh -c "apt-get purge -qq -y edgeslam edgeslam-dbgsym libedgeslam0 libedgeslam-dev && apt-get autoremove -qq -y --purge" > /dev/null 2>&1 || fail "removal"
+inside sh -c "apt-get purge -qq -y edgeslam libedgeslam0 libedgeslam-dev && apt-get autoremove -qq -y --purge" > /dev/null 2>&1 || fail "removal"
 left=$(comm -13 "$build/before.txt" <(files) | grep -i edgeslam || true)
 [[ -z $left ]] || { echo "$left"; fail "removal leaves these"; }
 check "removal leaves nothing"
