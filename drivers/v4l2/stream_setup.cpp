@@ -174,7 +174,7 @@ SettledStream settleStream(const CaptureDevice& device, const CameraOptions& opt
   ImageFormat wanted;
   if (const int error = readFormat(device, wanted); error < 0) {
     // v4l2loopback answers EINVAL as long as nobody feeds it.
-    return {{}, {device.path + ": tells no format: " + errorText(error), /*may_heal=*/true}};
+    return {{}, {device.path + ": tells no format: " + errorText(error), error == -EINVAL || mayHeal(error)}};
   }
   if (options.width > 0) wanted.width = static_cast<std::uint32_t>(options.width);
   if (options.height > 0) wanted.height = static_cast<std::uint32_t>(options.height);

@@ -15,8 +15,8 @@
 namespace edgeslam {
 
 // Mapping is done between the frames: the same frames give the same poses and the same map to the last bit, but a frame
-// that makes a keyframe takes longer. LiveSlam is for robots. An object is for one thread at a time; different objects
-// are independent of each other.
+// that makes a keyframe takes longer. LiveSlam is for robots: a Slam keeps a few hundred bytes of every frame for
+// finish(). An object is for one thread at a time; different objects are independent of each other.
 class EDGESLAM_PUBLIC Slam {
  public:
   // A configuration as the program's, with a camera's calibration in it. Throws InputError where it cannot be used.

@@ -76,7 +76,13 @@ void RunPublisher::followScale(Clock::time_point now) {
   }
 }
 
-std::string RunPublisher::scaleProblem() const { return scale_ == ScaleKind::known_distance ? "" : search_.problem(); }
+std::string RunPublisher::scaleProblem() const {
+  if (scale_ == ScaleKind::known_distance) return "";
+  const std::string problem = search_.problem();
+  const std::int64_t ignored = publisher_.odometryIgnored();
+  if (problem.empty() || ignored == 0) return problem;
+  return problem + " (" + std::to_string(ignored) + " messages of it were no pose of a body, or came too many at once)";
+}
 
 // Once of each kind for a map: problems come and go, and the status has them all.
 void RunPublisher::tellScaleProblem() {

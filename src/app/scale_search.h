@@ -31,7 +31,6 @@ class ScaleSearch {
   // Whether a map is wanted now, for groundOf(): each 2 s until the scale is known, then each 10 s.
   bool wantsMap(double seconds) const;
   void mapComes(double seconds) { last_map_s_ = seconds; }
-  const ScaleOptions& options() const { return options_; }
 
  private:
   std::optional<ScaleEstimate> estimate() const;

@@ -49,33 +49,35 @@ bool insideImage(const cv::Mat& image, const Eigen::Vector2f& pixel, float borde
 
 }  // namespace
 
-Bearings bearingsOfTracks(const Camera& camera, const std::vector<Track>& tracks, std::pmr::memory_resource* memory) {
+AlignmentPoints placeTracks(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
+                            const Pose& world_T_last, double scene_depth, std::pmr::memory_resource* memory) {
   std::pmr::vector<Eigen::Vector2d> pixels(memory);
   pixels.reserve(tracks.size());
   for (const Track& track : tracks) pixels.push_back(track.pixel.cast<double>());
-  Bearings bearings(tracks.size(), memory);
+  std::pmr::vector<Eigen::Vector3d> bearings(tracks.size(), memory);
   bearingsOf(camera, pixels.data(), pixels.size(), bearings.data());
-  return bearings;
+
+  const Pose last_T_world = world_T_last.inverse();
+  AlignmentPoints placed(memory);
+  placed.reserve(tracks.size());
+  AscendingPoints points(view);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const ViewPoint* point = points.find(tracks[i].id);
+    const double depth = point ? (last_T_world * worldPosition(view, *point)).norm() : scene_depth;
+    placed.push_back({tracks[i].pixel, bearings[i] * depth});
+  }
+  return placed;
 }
 
-Pixels predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
-                     const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth,
-                     std::pmr::memory_resource* memory) {
-  const Pose last_T_world = world_T_last.inverse(), predicted_T_world = world_T_predicted.inverse();
+Pixels predictPixels(const Camera& camera, const AlignmentPoints& points, const Pose& world_T_last,
+                     const Pose& world_T_predicted, std::pmr::memory_resource* memory) {
+  const Pose predicted_T_world = world_T_predicted.inverse();
   Pixels predictions(memory);
-  predictions.reserve(tracks.size());
-  AscendingPoints points(view);
-  const Bearings bearings = bearingsOfTracks(camera, tracks, memory);
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const Track& track = tracks[i];
-    double depth = scene_depth;
-    if (const ViewPoint* point = points.find(track.id)) {
-      depth = (last_T_world * worldPosition(view, *point)).norm();
-    }
-    const Eigen::Vector3d in_last = bearings[i] * depth;
-    const Eigen::Vector3d in_predicted = predicted_T_world * (world_T_last * in_last);
-    predictions.push_back(in_predicted.z() > 0.01 * depth ? Eigen::Vector2f(project(camera, in_predicted).cast<float>())
-                                                          : track.pixel);
+  predictions.reserve(points.size());
+  for (const AlignmentPoint& point : points) {
+    const Eigen::Vector3d predicted = predicted_T_world * (world_T_last * point.position);
+    const bool before_camera = predicted.z() > 0.01 * point.position.norm();
+    predictions.push_back(before_camera ? Eigen::Vector2f(project(camera, predicted).cast<float>()) : point.pixel);
   }
   return predictions;
 }

@@ -8,21 +8,22 @@
 #include "flow/optical_flow.h"
 #include "geometry/camera.h"
 #include "map/map_view.h"
+#include "tracking/sparse_alignment.h"
 #include "tracking/track.h"
 
 namespace edgeslam {
 
-// Where each track was last seen from the camera: unit vectors in its frame.
-using Bearings = std::pmr::vector<Eigen::Vector3d>;
+// One entry a track: where it was seen last and, on that ray, its position in that camera's frame [map units], as far
+// away as its map point or, where it has none, at the scene's usual depth.
+AlignmentPoints placeTracks(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
+                            const Pose& world_T_last, double scene_depth,
+                            std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-Bearings bearingsOfTracks(const Camera& camera, const std::vector<Track>& tracks, std::pmr::memory_resource* memory);
-
-// Where each track should be seen after the camera moved: its last pixel plus the motion of its map point, or, where it
-// has none, of a point at the scene's usual depth.
+// Where each point should be seen after the camera moved; one that would be behind it, where it was.
 using Pixels = std::pmr::vector<Eigen::Vector2f>;
 
-Pixels predictPixels(const Camera& camera, const std::vector<Track>& tracks, const MapView& view,
-                     const Pose& world_T_last, const Pose& world_T_predicted, double scene_depth,
+Pixels predictPixels(const Camera& camera, const AlignmentPoints& points, const Pose& world_T_last,
+                     const Pose& world_T_predicted,
                      std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // Median distance of the tracks' map points from the camera [map units]; `fallback` where none has one.

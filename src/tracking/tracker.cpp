@@ -123,10 +123,11 @@ bool Tracker::followAndLocate(StageClock& clock) {
   const FrameImages& from = *last_.images;
   const FrameImages& to = *frame_.images;
   const double scene_depth = medianDepth(last_.tracks, view_, last_.world_T_camera, 1.0, &scratch_);
-  const Pose predicted = alignImages(scene_depth);
+  const AlignmentPoints points =
+      placeTracks(camera_, last_.tracks, view_, last_.world_T_camera, scene_depth, &scratch_);
+  const Pose predicted = alignImages(points);
   clock.finished(Stage::alignment);
-  const Pixels predictions =
-      predictPixels(camera_, last_.tracks, view_, last_.world_T_camera, predicted, scene_depth, &scratch_);
+  const Pixels predictions = predictPixels(camera_, points, last_.world_T_camera, predicted, &scratch_);
   const FlowMatches matches = followPoints(from, to, last_.tracks, predictions, options_.flow, &scratch_);
   filterTracks(from, to, *frame_.edges, last_.tracks, matches, options_.flow, frame_.tracks, &scratch_);
   clock.finished(Stage::flow);
@@ -153,23 +154,12 @@ bool Tracker::followAndLocate(StageClock& clock) {
 
 // The motion since the last frame from the images as a whole: first its rotation, then all of it by the tracks'
 // patches.
-Pose Tracker::alignImages(double scene_depth) {
+Pose Tracker::alignImages(const AlignmentPoints& points) {
   const ImagePyramid& from = last_.images->pyramid;
   const ImagePyramid& to = frame_.images->pyramid;
   const Pose by_velocity = predictPose(frame_.images->time_ns).inverse() * last_.world_T_camera;
   const Pose by_rotation{alignRotation(camera_, rotation_grids_, from, to, by_velocity.rotation),
                          by_velocity.translation};
-  const Pose last_T_world = last_.world_T_camera.inverse();
-  AlignmentPoints points(&scratch_);
-  points.reserve(last_.tracks.size());
-  AscendingPoints map_points(view_);
-  const Bearings bearings = bearingsOfTracks(camera_, last_.tracks, &scratch_);
-  for (std::size_t i = 0; i < last_.tracks.size(); ++i) {
-    const Track& track = last_.tracks[i];
-    const ViewPoint* point = map_points.find(track.id);
-    const double depth = point ? (last_T_world * worldPosition(view_, *point)).norm() : scene_depth;
-    points.push_back({track.pixel, bearings[i] * depth});
-  }
   const Pose to_T_from =
       alignSparsely(camera_, from, to, points, by_rotation, by_velocity, options_.alignment, &scratch_);
   return last_.world_T_camera * to_T_from.inverse();

@@ -127,7 +127,7 @@ class Tracker {
   void prepare(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, StageClock& clock);
   bool isLost(std::int64_t time_ns) const;
   bool followAndLocate(StageClock& clock);
-  Pose alignImages(double scene_depth);
+  Pose alignImages(const AlignmentPoints& points);
   int fewestInliers(std::size_t in_view) const;
   void dropOutliers(const FramePose& estimate);
   void reuseMap(TrackedState& frame);

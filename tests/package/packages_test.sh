@@ -11,7 +11,7 @@ for tool in mmdebstrap lintian help2man dpkg-shlibdeps; do
 done
 ((EUID == 0)) || { echo "skipped: not root"; exit 77; }
 
-root=$(mktemp -d /tmp/edgeslam-packages-XXXXXX)
+root=$(mktemp -d --tmpdir edgeslam-packages-XXXXXX)
 trap 'umount "$root/proc" 2> /dev/null || true; rm -rf "$root"' EXIT
 check() { echo "ok: $*"; }
 fail() { echo "FAILED: $*"; exit 1; }

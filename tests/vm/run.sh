@@ -1,11 +1,12 @@
 #!/bin/bash
-# Boots a small virtual machine with Debian's kernel and runs the camera tests in it, against real kernel drivers: vivid and
-# v4l2loopback, with recordings fed through it into the daemon; with --vimc also vimc through Debian 12's libcamera (0.0.3); with --virtual then, in a second machine with
-# Debian 13's kernel and packages, libcamera 0.4.0 and its virtual pipeline. Everything is made from nothing in CACHE and
-# kept there.
+# Boots a small virtual machine with Debian's kernel and runs the camera tests in it, against real kernel drivers: vivid
+# and v4l2loopback, with recordings fed through it into the daemon; with --vimc also vimc through Debian 12's libcamera
+# (0.0.3); with --virtual then, in a second machine with Debian 13's kernel and packages, libcamera 0.4.0 and its virtual
+# pipeline. Everything is made from nothing in CACHE and kept there.
 #
 # usage: run.sh VM_TESTS CACHE [--vimc] [--virtual] [GTEST_OPTION...]
-# VM_TESTS is that program in its build folder, beside edgeslam. Needs root (the guest reads the host's files) and the packages that it names where they are missing.
+# VM_TESTS is that program in its build folder, beside edgeslam. Needs root (the guest reads the host's files) and the
+# packages that it names where they are missing.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source-path=SCRIPTDIR

@@ -132,16 +132,19 @@ TEST_F(DaemonScale, OfWheelsOfAnotherClockIsNotTakenAndTold) {
 TEST_F(DaemonScale, ComesFromTheCamerasHeight) {
   const std::string configuration =
       configure(std::string(mounted) + "scale: {source: camera_height, camera_height_m: 0.9}\n");
-  const auto daemon = startOn(drive_, {"--config", configuration});
-  const std::vector<state_t> states = drive(*daemon);
-  ASSERT_FALSE(states.empty());
-  // The drive lasts 10 s, the ground is known after 6 to 7 of them where mapping keeps up.
-  if (states.back().scale_state == state_t::SCALE_UNKNOWN) {
-    const std::string reason = robot_->heard().statuses.back().scale_reason;
-    ASSERT_FALSE(reason.empty()) << "why it is not known is told: " << daemon->said();
-    GTEST_SKIP() << "this computer was too busy to see the ground often enough in time: " << reason;
+  // The drive lasts 10 s, the ground is known after 6 to 7 of them; on a busy computer mapping may not keep up.
+  std::vector<state_t> states;
+  std::string said;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    if (attempt > 0) robot_ = std::make_unique<Robot>();
+    const auto daemon = startOn(drive_, {"--config", configuration});
+    states = drive(*daemon);
+    said = daemon->said();
+    ASSERT_FALSE(states.empty());
+    if (states.back().scale_state != state_t::SCALE_UNKNOWN) break;
+    ASSERT_FALSE(robot_->heard().statuses.back().scale_reason.empty()) << "why it is not known is told: " << said;
   }
-  expectTrueScale(states, state_t::SCALE_FROM_CAMERA_HEIGHT, daemon->said());
+  expectTrueScale(states, state_t::SCALE_FROM_CAMERA_HEIGHT, said);
 }
 
 TEST_F(DaemonScale, WithoutAGroundStaysUnknownAndWhyIsTold) {

@@ -8,6 +8,26 @@
 namespace edgeslam {
 namespace {
 
+Pixels predicted(const Camera& camera, const std::vector<Track>& tracks, const MapView& view, const Pose& last,
+                 const Pose& next, double scene_depth) {
+  return predictPixels(camera, placeTracks(camera, tracks, view, last, scene_depth), last, next);
+}
+
+TEST(PointFollowing, PlacesTracksOnTheirRays) {
+  const Camera camera = smallCamera();
+  MapView view;
+  view.keyframes = {{0, Pose(), nullptr}};
+  const Pose last{rotationExp({0.01, 0.02, 0}), {0.1, 0, 0}};
+  const Eigen::Vector3d point(0.2, -0.1, 2.5);
+  view.points = {viewPoint(view, 1, 0, point)};
+  const Eigen::Vector2f seen = project(camera, last.inverse() * point).cast<float>();
+  const AlignmentPoints placed = placeTracks(camera, {trackAt(0, seen), trackAt(1, seen)}, view, last, 4.0);
+  ASSERT_EQ(placed.size(), 2u);
+  EXPECT_NEAR(placed[0].position.norm(), 4, 1e-9) << "has no map point";
+  EXPECT_LT((placed[1].position - last.inverse() * point).norm(), 1e-3);
+  EXPECT_EQ(placed[1].pixel, seen);
+}
+
 TEST(PointFollowing, PredictsWhereAMapPointIsSeenNext) {
   const Camera camera = smallCamera();
   MapView view;
@@ -21,9 +41,9 @@ TEST(PointFollowing, PredictsWhereAMapPointIsSeenNext) {
     tracks.push_back(trackAt(i, project(camera, last.inverse() * point).cast<float>()));
     expected.emplace_back(project(camera, next.inverse() * point).cast<float>());
   }
-  const auto predicted = predictPixels(camera, tracks, view, last, next, 1.0);
-  ASSERT_EQ(predicted.size(), tracks.size());
-  for (std::size_t i = 0; i < tracks.size(); ++i) EXPECT_LT((predicted[i] - expected[i]).norm(), 0.01f) << i;
+  const Pixels seen_next = predicted(camera, tracks, view, last, next, 1.0);
+  ASSERT_EQ(seen_next.size(), tracks.size());
+  for (std::size_t i = 0; i < tracks.size(); ++i) EXPECT_LT((seen_next[i] - expected[i]).norm(), 0.01f) << i;
 }
 
 // The pixel goes on from where it was seen, even where the map point projects elsewhere.
@@ -33,7 +53,7 @@ TEST(PointFollowing, PredictsThePointsMotionNotItsPlace) {
   view.keyframes = {{0, Pose(), nullptr}};
   view.points = {viewPoint(view, 0, 0, {0.1, 0.1, 2})};
   const Eigen::Vector2f seen = project(camera, {0.1, 0.1, 2}).cast<float>() + Eigen::Vector2f(3, -2);
-  EXPECT_LT((predictPixels(camera, {trackAt(0, seen)}, view, Pose(), Pose(), 1.0)[0] - seen).norm(), 1e-3f);
+  EXPECT_LT((predicted(camera, {trackAt(0, seen)}, view, Pose(), Pose(), 1.0)[0] - seen).norm(), 1e-3f);
 }
 
 TEST(PointFollowing, PredictsATrackWithoutDepthAtTheScenesDepth) {
@@ -44,8 +64,8 @@ TEST(PointFollowing, PredictsATrackWithoutDepthAtTheScenesDepth) {
   const Pose next{Eigen::Quaterniond::Identity(), {0.2, 0, 0}};
   const std::vector<Track> tracks{trackAt(3, project(camera, point).cast<float>())};
   const Eigen::Vector2f expected = project(camera, next.inverse() * point).cast<float>();
-  EXPECT_LT((predictPixels(camera, tracks, view, Pose(), next, 3.5)[0] - expected).norm(), 0.01f);
-  EXPECT_GT((predictPixels(camera, tracks, view, Pose(), next, 7.0)[0] - expected).norm(), 1.0f);
+  EXPECT_LT((predicted(camera, tracks, view, Pose(), next, 3.5)[0] - expected).norm(), 0.01f);
+  EXPECT_GT((predicted(camera, tracks, view, Pose(), next, 7.0)[0] - expected).norm(), 1.0f);
 }
 
 TEST(PointFollowing, APointThatWouldBeBehindTheCameraIsPredictedWhereItIs) {
@@ -54,7 +74,7 @@ TEST(PointFollowing, APointThatWouldBeBehindTheCameraIsPredictedWhereItIs) {
   view.keyframes = {{0, Pose(), nullptr}};
   const Eigen::Vector2f pixel(100, 80);
   const Pose beyond{Eigen::Quaterniond::Identity(), {0, 0, 5}};
-  EXPECT_EQ(predictPixels(camera, {trackAt(0, pixel)}, view, Pose(), beyond, 2.0)[0], pixel);
+  EXPECT_EQ(predicted(camera, {trackAt(0, pixel)}, view, Pose(), beyond, 2.0)[0], pixel);
 }
 
 TEST(PointFollowing, MedianDepthIsOfTheMapPointsAmongTheTracks) {
