@@ -53,7 +53,7 @@ state_t stateMessage(const FrameResult& result, const RobotSetup& robot, const T
   put(local_T_body.rotation, state.orientation);
   put(robot.scale.metres_per_unit * world_T_camera.translation, state.camera_position);
   put(world_T_camera.rotation, state.camera_orientation);
-  put(bodyCovariance(state.has_pose ? result.covariance : Matrix6d::Zero(), robot), state.covariance);
+  put(bodyCovariance(state.has_pose ? result.world_covariance : Matrix6d::Zero(), robot), state.covariance);
 
   state.has_twist = twist != nullptr;
   put(twist ? twist->velocity : Eigen::Vector3d::Zero(), state.velocity);

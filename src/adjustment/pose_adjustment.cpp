@@ -171,6 +171,24 @@ bool judge(const Camera& camera, const PreparedObservations& observations, const
 
 }  // namespace
 
+PoseObservation observeWithDepth(const Camera& camera, const Pose& camera_T_host, const HostedPoint& point,
+                                 const Eigen::Vector3d& world_position, const Measurement& measurement) {
+  PoseObservation observation;
+  observation.point = world_position;
+  observation.measurement = measurement;
+  const Eigen::Vector3d scaled =
+      camera_T_host.rotation * point.host_bearing + point.inverse_depth * camera_T_host.translation;
+  if (!(scaled.z() > 1e-3)) return observation;
+  Eigen::Matrix<double, 2, 3> jacobian;
+  project(camera, scaled, &jacobian);
+  const Eigen::Vector2d motion = jacobian * camera_T_host.translation;  // d pixel / d inverse depth
+  const double length = motion.norm();
+  if (!(length > 1e-9)) return observation;
+  observation.depth_sigma_px = length * point.inverse_depth_sigma;
+  observation.depth_direction = motion / length;
+  return observation;
+}
+
 PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
                       const PoseOptions& options, std::pmr::memory_resource* memory) {
   PoseResult result(memory);
@@ -184,6 +202,20 @@ PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, 
   result.world_T_camera = pose;
   result.converged = true;
   return result;
+}
+
+Matrix6d poseInformation(const Camera& camera, const Pose& world_T_camera, const PoseObservations& observations) {
+  const CameraFrame frame = cameraFrame(world_T_camera);
+  Matrix6d information = Matrix6d::Zero();
+  for (const PoseObservation& o : observations) {
+    Eigen::Vector2d residual;
+    Matrix26d jacobian;
+    const WhitenedPixel measured{o.measurement.pixel, whiteningWithDepth(o)};
+    if (poseResidual(camera, measured, frame, o.point, residual, &jacobian)) {
+      information.noalias() += jacobian.transpose() * jacobian;
+    }
+  }
+  return information;
 }
 
 }  // namespace edgeslam

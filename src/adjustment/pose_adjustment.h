@@ -20,6 +20,18 @@ struct PoseObservation {
   Eigen::Vector2d depth_direction = Eigen::Vector2d::UnitX();
 };
 
+// A point as its host keyframe knows it.
+struct HostedPoint {
+  Eigen::Vector3d host_bearing;  // unit, host camera frame
+  double inverse_depth = 0;
+  double inverse_depth_sigma = 0;
+};
+
+// What is seen of a point, with the uncertainty that its depth adds along the epipolar direction from where the camera
+// is taken to be.
+PoseObservation observeWithDepth(const Camera& camera, const Pose& camera_T_host, const HostedPoint& point,
+                                 const Eigen::Vector3d& world_position, const Measurement& measurement);
+
 using PoseObservations = std::pmr::vector<PoseObservation>;
 
 struct PoseOptions {
@@ -48,5 +60,9 @@ struct PoseResult {
 // what is needed on the way.
 PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
                       const PoseOptions& options, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+
+// Inverse covariance of the right-hand update [translation; rotation] that the observations' standard deviations give a
+// camera there, whatever the residuals are.
+Matrix6d poseInformation(const Camera& camera, const Pose& world_T_camera, const PoseObservations& observations);
 
 }  // namespace edgeslam

@@ -8,7 +8,7 @@
 
 #include "edges/point_choice.h"
 #include "geometry/measurement.h"
-#include "geometry/pose.h"
+#include "geometry/uncertainty.h"
 #include "image/pyramid.h"
 
 namespace edgeslam {
@@ -52,6 +52,7 @@ struct Keyframe {
   std::vector<PointObservation> observations;  // sorted by point
   std::shared_ptr<const FrameImages> images;   // null for a keyframe that no point is hosted in
   std::string reason;
+  Matrix7d uncertainty = Matrix7d::Zero();  // against the first keyframe (mapping/map_uncertainty.h)
 };
 
 }  // namespace edgeslam

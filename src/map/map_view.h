@@ -26,6 +26,7 @@ struct ViewKeyframe {
   KeyframeId id = 0;
   Pose world_T_camera;
   std::shared_ptr<const FrameImages> images;  // null where no point needs it
+  Matrix7d uncertainty = Matrix7d::Zero();    // against the first keyframe
 };
 
 struct MapView {

@@ -7,6 +7,7 @@ namespace edgeslam {
 void Mapper::goOnWith(Map map) {
   map_ = std::move(map);
   description_ = "a saved map";
+  renewUncertainty(camera_, options_.uncertainty, map_);
   initialised_ = true;
   ++version_;
 }
@@ -33,6 +34,7 @@ bool Mapper::add(const TrackedFrame& frame) {
   if (initialisation_.add(frame)) {
     initialised_ = true;
     map_ = initialisation_.map();
+    renewUncertainty(camera_, options_.uncertainty, map_);
     description_ = initialisation_.description();
     early_poses_ = initialisation_.earlyPoses();
   } else if (!initialisation_.changed() && initialisation_.waitingFor() == waited_for) {
@@ -57,6 +59,7 @@ void Mapper::addKeyframe(const TrackedFrame& frame) {
   adjustLocally(camera_, options_.local_adjustment, map_);
   const std::vector<CulledKeyframe> culled = cullKeyframes(options_.culling, map_, candidates_);
   culled_.insert(culled_.end(), culled.begin(), culled.end());
+  addUncertainty(camera_, options_.uncertainty, map_);
   ++version_;
 }
 
@@ -92,6 +95,7 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
 
 void Mapper::apply(const MapChange& change) {
   applyChange(change, map_);
+  renewUncertainty(camera_, options_.uncertainty, map_);
   ++version_;
 }
 

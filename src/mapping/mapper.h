@@ -11,6 +11,7 @@
 #include "mapping/global_adjustment.h"
 #include "mapping/initialisation.h"
 #include "mapping/local_adjustment.h"
+#include "mapping/map_uncertainty.h"
 #include "mapping/new_points.h"
 #include "mapping/track_loss_recovery.h"
 #include "mapping/view_of_map.h"
@@ -26,6 +27,7 @@ struct MapperOptions {
   bool recovery_enabled = true;
   RecoveryOptions recovery;
   ViewOptions view;
+  MapUncertaintyOptions uncertainty;
 };
 
 class Mapper {

@@ -64,7 +64,7 @@ void writeSource(const Map& map, const MapPoint& point, ViewPoint& view_point) {
 MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options) {
   MapView view;
   for (const Keyframe& keyframe : map.keyframes) {
-    view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr});
+    view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr, keyframe.uncertainty});
   }
   const std::vector<char> in_view = keyframesInView(map, centre, options);
   for (const auto& [id, point] : map.points) {

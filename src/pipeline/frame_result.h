@@ -16,8 +16,10 @@ struct FrameResult {
   std::string reason;  // why it is not `tracking`, or empty
   bool has_pose = false;
   Pose world_T_camera;
-  Matrix6d covariance = Matrix6d::Zero();  // right-hand update [translation; rotation]
-  KeyframeId reference = -1;               // the keyframe that carries this frame's final pose, or -1
+  // Of the right-hand update [translation; rotation]: of the pose in the map as it is, and of the pose in the world, in
+  // which the map itself may have drifted since its first keyframe.
+  Matrix6d covariance = Matrix6d::Zero(), world_covariance = Matrix6d::Zero();
+  KeyframeId reference = -1;  // the keyframe that carries this frame's final pose, or -1
   Pose reference_T_camera;
   int tracked_points = 0;
   int mapped_points = 0;

@@ -16,7 +16,7 @@ FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
   record.reason = frame.reason;
   record.has_live_pose = frame.has_pose;
   record.live_world_T_camera = frame.world_T_camera;
-  record.standard_deviation = frame.covariance.diagonal().cwiseMax(0).cwiseSqrt().cast<float>();
+  record.standard_deviation = frame.world_covariance.diagonal().cwiseMax(0).cwiseSqrt().cast<float>();
   record.tracked_points = frame.tracked_points;
   record.mapped_points = frame.mapped_points;
   record.times = frame.times;

@@ -103,6 +103,7 @@ const FrameResult& TrackingWorker::makeResult(std::int64_t index, std::int64_t t
   result_.has_pose = outcome_.state == FrameState::tracking || outcome_.state == FrameState::predicted;
   result_.world_T_camera = outcome_.world_T_camera;
   result_.covariance = outcome_.covariance;
+  result_.world_covariance = outcome_.world_covariance;
   const bool carried = outcome_.state == FrameState::tracking;
   result_.reference = carried ? outcome_.reference : -1;
   result_.reference_T_camera = carried ? outcome_.reference_T_camera : Pose();

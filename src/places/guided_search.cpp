@@ -27,22 +27,6 @@ struct RoundResult {
   std::vector<double> distances;      // of the matches' points from the camera
 };
 
-// Where a point of uncertain depth may be in the image (design, section 5: its depth's variance is kept and used).
-void addDepthUncertainty(const Camera& camera, const Map& map, const MapPoint& point, const Pose& camera_T_world,
-                         PoseObservation& observation) {
-  const Pose camera_T_host = camera_T_world * map.keyframes[point.host].world_T_camera;
-  const Eigen::Vector3d scaled =
-      camera_T_host.rotation * point.host_bearing + point.inverse_depth * camera_T_host.translation;
-  if (!(scaled.z() > 1e-3)) return;
-  Eigen::Matrix<double, 2, 3> jacobian;
-  project(camera, scaled, &jacobian);
-  const Eigen::Vector2d motion = jacobian * camera_T_host.translation;  // d pixel / d inverse depth
-  const double length = motion.norm();
-  if (!(length > 1e-9)) return;
-  observation.depth_sigma_px = length * point.inverse_depth_sigma;
-  observation.depth_direction = motion / length;
-}
-
 // At most `count` of the points, corners before edges, evenly from the list.
 VisiblePoints thinOut(const SearchPoints& points, const VisiblePoints& visible, int count) {
   if (static_cast<int>(visible.size()) <= count) return visible;
@@ -86,19 +70,19 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
     const Track seen = accuracyAt(current.pyramid.levels[0], options.accuracy, found);
     // A corner must be one in both images to count as one.
     const bool corner = point.corner && seen.corner;
-    PoseObservation observation;
-    observation.point = point.position;
-    observation.measurement = corner ? measurementOf(point, found) : measurementOf(seen);
+    Measurement measurement = corner ? measurementOf(point, found) : measurementOf(seen);
     if (!corner) {
-      observation.measurement.sigma_normal = options.accuracy.sigma_edge;
-      observation.measurement.sigma_tangent = std::max<double>(seen.sigma_tangent, point.sigma_tangent);
+      measurement.sigma_normal = options.accuracy.sigma_edge;
+      measurement.sigma_tangent = std::max<double>(seen.sigma_tangent, point.sigma_tangent);
     }
-    result.matches.push_back({point.id, observation.measurement, point.corner, keyframes[found.index]});
+    result.matches.push_back({point.id, measurement, point.corner, keyframes[found.index]});
     result.distances.push_back((point.position - start.translation).norm());
-    observation.measurement.sigma_normal *= round.widening;
-    observation.measurement.sigma_tangent *= round.widening;
-    addDepthUncertainty(camera, map, map.points.at(point.id), camera_T_world, observation);
-    observations.push_back(observation);
+    measurement.sigma_normal *= round.widening;
+    measurement.sigma_tangent *= round.widening;
+    const MapPoint& mapped = map.points.at(point.id);
+    observations.push_back(observeWithDepth(camera, camera_T_world * map.keyframes[mapped.host].world_T_camera,
+                                            {mapped.host_bearing, mapped.inverse_depth, mapped.inverse_depth_sigma},
+                                            point.position, measurement));
   }
   result.pose = adjustPose(camera, start, observations, options.pose);
   return result;

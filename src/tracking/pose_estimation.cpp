@@ -10,23 +10,9 @@ namespace {
 // What is seen of a map point, with the uncertainty that its depth adds along the epipolar direction.
 PoseObservation observationOf(const Camera& camera, const MapView& view, const ViewPoint& point, const Track& track,
                               const Pose& predicted_T_world) {
-  PoseObservation observation;
-  observation.point = worldPosition(view, point);
-  observation.measurement = measurementOf(track);
-  const Pose camera_T_host = predicted_T_world * view.keyframes[point.host].world_T_camera;
-  const Eigen::Vector3d scaled =
-      camera_T_host.rotation * point.host_bearing + point.inverse_depth * camera_T_host.translation;
-  if (scaled.z() > 1e-3) {
-    Eigen::Matrix<double, 2, 3> jacobian;
-    project(camera, scaled, &jacobian);
-    const Eigen::Vector2d motion = jacobian * camera_T_host.translation;  // d pixel / d inverse depth
-    const double length = motion.norm();
-    if (length > 1e-9) {
-      observation.depth_sigma_px = length * point.inverse_depth_sigma;
-      observation.depth_direction = motion / length;
-    }
-  }
-  return observation;
+  return observeWithDepth(camera, predicted_T_world * view.keyframes[point.host].world_T_camera,
+                          {point.host_bearing, point.inverse_depth, point.inverse_depth_sigma},
+                          worldPosition(view, point), measurementOf(track));
 }
 
 // Of the mapped tracks; 0 where there are none.

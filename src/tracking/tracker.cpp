@@ -15,6 +15,8 @@ constexpr int images_at_start = 8;
 constexpr int edge_maps = 5;  // the current, the last, the lost and the kept frame's, and one that mapping looks at
 constexpr std::size_t most_found_again = 4096;
 
+double squared(double value) { return value * value; }
+
 int pyramidLevels(const TrackerOptions& options) { return std::max(options.flow.levels, 6); }
 
 // As made anew, but with its memory.
@@ -23,6 +25,7 @@ void clear(TrackingOutcome& outcome) {
   outcome.reason.clear();
   outcome.world_T_camera = outcome.reference_T_camera = Pose();
   outcome.covariance.setZero();
+  outcome.world_covariance.setZero();
   outcome.reference = -1;
   outcome.tracked_points = outcome.mapped_points = 0;
   outcome.tells_mapping = false;
@@ -198,11 +201,32 @@ void Tracker::reuseMap(TrackedState& frame) {
                  static_cast<std::size_t>(options_.points.count), options_.map_reuse, frame.tracks, &scratch_);
 }
 
-void Tracker::report(bool mapping_busy, TrackingOutcome& outcome) const {
+// Of the keyframe in which most of the points in view are hosted, carried to where the camera is.
+Matrix6d Tracker::uncertaintyOfMapAt(const TrackedState& state) {
+  scratch_.release();
+  std::pmr::vector<int> points_of(view_.keyframes.size(), 0, &scratch_);
+  AscendingPoints points(view_);
+  std::size_t most = view_.keyframes.size() - 1;
+  for (const Track& track : state.tracks) {
+    const ViewPoint* point = points.find(track.id);
+    if (!point) continue;
+    const std::size_t place = view_.keyframes.placeOf(point->host);
+    if (++points_of[place] > points_of[most]) most = place;
+  }
+  const ViewKeyframe& keyframe = view_.keyframes.atPlace(most);
+  return carriedUncertainty(keyframe.uncertainty, keyframe.world_T_camera.inverse() * state.world_T_camera)
+      .topLeftCorner<6, 6>();
+}
+
+void Tracker::report(bool mapping_busy, TrackingOutcome& outcome) {
   outcome.state = view_.initialised ? FrameState::tracking : FrameState::initialising;
   if (!view_.initialised) outcome.reason = view_.waiting_for;
   outcome.world_T_camera = frame_.world_T_camera;
   outcome.covariance = frame_.covariance;
+  if (view_.initialised) {
+    map_covariance_ = uncertaintyOfMapAt(frame_);
+    outcome.world_covariance = squared(options_.correlation_factor) * frame_.covariance + map_covariance_;
+  }
   outcome.reference = view_.keyframes.back().id;
   outcome.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * frame_.world_T_camera;
   outcome.tracked_points = static_cast<int>(frame_.tracks.size());
@@ -235,6 +259,7 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, TrackingOut
   outcome.covariance = last_.covariance;
   outcome.covariance.diagonal().head<3>().array() += translation * translation;
   outcome.covariance.diagonal().tail<3>().array() += rotation * rotation;
+  outcome.world_covariance = squared(options_.correlation_factor) * outcome.covariance + map_covariance_;
   outcome.reference = view_.keyframes.back().id;
   outcome.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * outcome.world_T_camera;
 }

@@ -47,6 +47,9 @@ struct TrackerOptions {
   double regain_seconds = 0.7;       // so long after a loss the last tracked frame's points are still looked for
   double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed ...
   double least_points_share = 0.15;  // ... nor with fewer than this share of the points of the pose before
+  // Errors of the map's points and of neighbours on an edge go together: the pose's standard deviations in the world
+  // are so many times what independent measurements would give.
+  double correlation_factor = 6;
 };
 
 enum class FrameState { initialising, tracking, predicted, lost };
@@ -55,8 +58,9 @@ struct TrackingOutcome {
   FrameState state = FrameState::initialising;
   std::string reason;                      // why the state is not `tracking`
   Pose world_T_camera;                     // measured when tracking, from motion alone when predicted
-  Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation]
-  KeyframeId reference = -1;               // the keyframe that carries this frame's final pose, or -1
+  Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation], in the map as it is
+  Matrix6d world_covariance = Matrix6d::Zero();  // with the map's own uncertainty where the camera looks
+  KeyframeId reference = -1;                     // the keyframe that carries this frame's final pose, or -1
   Pose reference_T_camera;
   int tracked_points = 0;
   int mapped_points = 0;  // map points that agree with the pose
@@ -131,7 +135,8 @@ class Tracker {
   int fewestInliers(std::size_t in_view) const;
   void dropOutliers(const FramePose& estimate);
   void reuseMap(TrackedState& frame);
-  void report(bool mapping_busy, TrackingOutcome& outcome) const;
+  void report(bool mapping_busy, TrackingOutcome& outcome);
+  Matrix6d uncertaintyOfMapAt(const TrackedState& state);
   void predict(std::int64_t time_ns, std::string_view reason, TrackingOutcome& outcome) const;
   void lose(std::int64_t time_ns, const char* reason, TrackingOutcome& outcome);
   Pose predictPose(std::int64_t time_ns) const;
@@ -158,13 +163,14 @@ class Tracker {
   MapView view_;
   BlurGate blur_gate_;
   std::shared_ptr<const FrameImages> latest_images_;
-  TrackedState frame_;               // the current one
-  TrackedState lost_;                // the current one where its pose was not found
-  TrackedState kept_;                // a lost frame that others look for
-  std::int64_t lost_since_ns_ = -1;  // -1: not lost
-  TrackedState last_;                // the last frame that was tracked
-  Pose last_T_next_;                 // motion from the last tracked frame to the next, one frame interval ahead
-  std::int64_t interval_ns_ = 0;     // that the motion was measured over
+  TrackedState frame_;                          // the current one
+  TrackedState lost_;                           // the current one where its pose was not found
+  TrackedState kept_;                           // a lost frame that others look for
+  Matrix6d map_covariance_ = Matrix6d::Zero();  // where the last pose was measured
+  std::int64_t lost_since_ns_ = -1;             // -1: not lost
+  TrackedState last_;                           // the last frame that was tracked
+  Pose last_T_next_;              // motion from the last tracked frame to the next, one frame interval ahead
+  std::int64_t interval_ns_ = 0;  // that the motion was measured over
   PointId next_point_ = 0;
   KeyframeId next_keyframe_ = 0;
   std::size_t tracks_at_start_ = 0;

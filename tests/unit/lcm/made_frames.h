@@ -16,6 +16,7 @@ inline FrameResult measuredFrame(std::int64_t index, const Pose& world_T_camera)
   frame.has_pose = true;
   frame.world_T_camera = world_T_camera;
   frame.covariance = 1e-6 * Matrix6d::Identity();
+  frame.world_covariance = 4e-6 * Matrix6d::Identity();
   frame.tracked_points = 400;
   frame.mapped_points = 200;
   frame.latency_ms = 12;
@@ -28,6 +29,7 @@ inline FrameResult frameWithoutPose(std::int64_t index, TrackingState state, con
   frame.reason = reason;
   frame.has_pose = false;
   frame.covariance.setZero();
+  frame.world_covariance.setZero();
   return frame;
 }
 

@@ -143,7 +143,7 @@ TEST(Messages, AStateTellsBodyAndCameraWithPositiveW) {
       EXPECT_NEAR(state.position[k], body.translation[k], 1e-12);
       EXPECT_NEAR(state.camera_position[k], 0.5 * frame.world_T_camera.translation[k], 1e-12);
     }
-    const Matrix6d covariance = bodyCovariance(frame.covariance, robot);
+    const Matrix6d covariance = bodyCovariance(frame.world_covariance, robot);
     EXPECT_EQ(state.covariance[1][4], covariance(1, 4));
     EXPECT_EQ(state.sequence, 7);
     EXPECT_EQ(state.frame, 6);
@@ -200,7 +200,7 @@ TEST(Messages, WhatIsNotFiniteNeverGoesOut) {
     EXPECT_EQ(lost.state.reason, "the pose is not finite");
 
     FrameResult rest = measuredFrame(1, Pose());
-    rest.covariance(4, 4) = rest.latency_ms = rest.reference_T_camera.translation.x() = broken;
+    rest.world_covariance(4, 4) = rest.latency_ms = rest.reference_T_camera.translation.x() = broken;
     rest.reference = 1;
     const PublishedFrame kept = messagesOf(rest, {}, measuredFrame(0, Pose()));
     expectFinite(kept);

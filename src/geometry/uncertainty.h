@@ -1,0 +1,31 @@
+// How uncertain a camera's pose in the world and the scale around it are together: the covariance of a right-hand
+// update [translation; rotation vector; logarithm of the scale], which takes a point x in the camera's frame to x + t +
+// r x x + s x (a small similarity).
+#pragma once
+
+#include "geometry/pose.h"
+
+namespace edgeslam {
+
+using Matrix7d = Eigen::Matrix<double, 7, 7>;
+
+// The update of camera b that goes with an update of camera a which takes b along.
+inline Matrix7d updateCarrying(const Pose& a_T_b) {
+  const Pose b_T_a = a_T_b.inverse();
+  const Eigen::Matrix3d turn = b_T_a.rotation.toRotationMatrix();
+  Matrix7d carry = Matrix7d::Zero();
+  carry.block<3, 3>(0, 0) = turn;
+  carry.block<3, 3>(0, 3) = skew(b_T_a.translation) * turn;
+  carry.block<3, 1>(0, 6) = -b_T_a.translation;
+  carry.block<3, 3>(3, 3) = turn;
+  carry(6, 6) = 1;
+  return carry;
+}
+
+// Of camera b, which is where it is by being known relative to camera a.
+inline Matrix7d carriedUncertainty(const Matrix7d& of_a, const Pose& a_T_b) {
+  const Matrix7d carry = updateCarrying(a_T_b);
+  return carry * of_a * carry.transpose();
+}
+
+}  // namespace edgeslam

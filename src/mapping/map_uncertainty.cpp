@@ -1,0 +1,169 @@
+#include "mapping/map_uncertainty.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "adjustment/pose_adjustment.h"
+
+namespace edgeslam {
+namespace {
+
+// Of a keyframe that nothing ties to another: all of the map's extent and any direction.
+constexpr double kUnknown = 1;
+
+struct SharedPoints {
+  PoseObservations observations;
+  double scale_information = 0;   // sum over the points of (depth over its standard deviation)^2
+  std::vector<double> distances;  // from the keyframe
+};
+
+// The map points that both see and that `keyframe` does not host, as it sees them.
+void addSharedPoints(const Camera& camera, const Map& map, const Keyframe& keyframe, KeyframeId other,
+                     SharedPoints& shared) {
+  const Pose camera_T_world = keyframe.world_T_camera.inverse();
+  for (const PointObservation& seen : keyframe.observations) {
+    const auto found = map.points.find(seen.point);
+    if (found == map.points.end() || found->second.host == keyframe.id) continue;
+    const MapPoint& point = found->second;
+    const auto in = [&](KeyframeId id) { return std::binary_search(point.seen_in.begin(), point.seen_in.end(), id); };
+    if (!in(keyframe.id) || (point.host != other && !in(other))) continue;
+    const Eigen::Vector3d position = worldPosition(map, point);
+    shared.observations.push_back(observeWithDepth(camera, camera_T_world * map.keyframes[point.host].world_T_camera,
+                                                   {point.host_bearing, point.inverse_depth, point.inverse_depth_sigma},
+                                                   position, seen.measurement));
+    shared.distances.push_back((position - keyframe.world_T_camera.translation).norm());
+    if (point.inverse_depth_sigma > 0) {
+      const double relative = point.inverse_depth / point.inverse_depth_sigma;
+      shared.scale_information += relative * relative;
+    }
+  }
+}
+
+double squared(double value) { return value * value; }
+
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// What the points that both see leave open of `keyframe` relative to `other`, and how far the way between them leads
+// astray.
+std::optional<Matrix7d> linkUncertainty(const Camera& camera, const MapUncertaintyOptions& options, const Map& map,
+                                        const Keyframe& keyframe, KeyframeId other_id) {
+  const Keyframe& other = map.keyframes[other_id];
+  const Pose keyframe_T_other = keyframe.world_T_camera.inverse() * other.world_T_camera;
+  SharedPoints seen_here, seen_there;
+  addSharedPoints(camera, map, keyframe, other_id, seen_here);
+  addSharedPoints(camera, map, other, keyframe.id, seen_there);
+  const Matrix6d carry = updateCarrying(keyframe_T_other).topLeftCorner<6, 6>();
+  const bool here = seen_here.observations.size() >= seen_there.observations.size();
+  const SharedPoints& more = here ? seen_here : seen_there;
+  if (static_cast<int>(more.observations.size()) < options.fewest_points || !(more.scale_information > 0))
+    return std::nullopt;
+  Matrix6d information = poseInformation(camera, (here ? keyframe : other).world_T_camera, more.observations);
+  if (!here) information = carry.transpose() * information * carry;
+  const Eigen::LDLT<Matrix6d> factor(information);
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-3)) return std::nullopt;
+  const double depth = medianOf(more.distances);
+  const double way = keyframe_T_other.translation.norm() / depth +
+                     rotationAngle(keyframe.world_T_camera.rotation, other.world_T_camera.rotation);
+  Matrix7d link = Matrix7d::Zero();
+  link.topLeftCorner<6, 6>() = squared(options.pose_factor) * factor.solve(Matrix6d::Identity()).eval();
+  link(6, 6) = squared(options.scale_factor) / more.scale_information;
+  link.diagonal().head<3>().array() += squared(options.position_walk * depth) * way;
+  link.diagonal().segment<3>(3).array() += squared(options.rotation_walk) * way;
+  link(6, 6) += squared(options.scale_walk) * way;
+  return link;
+}
+
+// Lengths count in map units: the scene of the map's start is one away.
+double sizeOf(const Matrix7d& uncertainty) { return uncertainty.trace(); }
+
+// Those that share most points, best first.
+std::vector<KeyframeId> neighboursOf(const MapUncertaintyOptions& options, const Map& map, KeyframeId keyframe) {
+  const std::vector<int> shared = sharedPoints(map, keyframe);
+  std::vector<KeyframeId> neighbours;
+  for (const Keyframe& other : map.keyframes) {
+    if (other.id != keyframe && shared[static_cast<std::size_t>(other.id)] >= options.fewest_points)
+      neighbours.push_back(other.id);
+  }
+  std::stable_sort(neighbours.begin(), neighbours.end(), [&](KeyframeId a, KeyframeId b) {
+    return shared[static_cast<std::size_t>(a)] > shared[static_cast<std::size_t>(b)];
+  });
+  if (static_cast<int>(neighbours.size()) > options.neighbours)
+    neighbours.resize(static_cast<std::size_t>(options.neighbours));
+  return neighbours;
+}
+
+Matrix7d through(const Map& map, const Keyframe& keyframe, KeyframeId other, const Matrix7d& link) {
+  const Keyframe& known = map.keyframes[other];
+  return carriedUncertainty(known.uncertainty, known.world_T_camera.inverse() * keyframe.world_T_camera) + link;
+}
+
+Matrix7d unknownFrom(const Map& map, const Keyframe& keyframe, KeyframeId other) {
+  return through(map, keyframe, other, kUnknown * Matrix7d::Identity());
+}
+
+// By keyframe number: those that it shares most points with, and those that it is one of the best for.
+std::vector<std::vector<KeyframeId>> links(const MapUncertaintyOptions& options, const Map& map) {
+  std::vector<std::vector<KeyframeId>> linked(numberOfKeyframes(map));
+  for (const Keyframe& keyframe : map.keyframes) {
+    for (const KeyframeId other : neighboursOf(options, map, keyframe.id)) {
+      linked[static_cast<std::size_t>(keyframe.id)].push_back(other);
+      linked[static_cast<std::size_t>(other)].push_back(keyframe.id);
+    }
+  }
+  return linked;
+}
+
+}  // namespace
+
+void addUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map) {
+  if (map.keyframes.size() < 2) return;
+  Keyframe& latest = map.keyframes.back();
+  latest.uncertainty = unknownFrom(map, latest, map.keyframes.atPlace(map.keyframes.size() - 2).id);
+  for (const KeyframeId other : neighboursOf(options, map, latest.id)) {
+    const std::optional<Matrix7d> link = linkUncertainty(camera, options, map, latest, other);
+    if (!link) continue;
+    const Matrix7d found = through(map, latest, other, *link);
+    if (sizeOf(found) < sizeOf(latest.uncertainty)) latest.uncertainty = found;
+  }
+}
+
+// Dijkstra's shortest paths from the first keyframe.
+void renewUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map) {
+  const double never = std::numeric_limits<double>::infinity();
+  std::vector<double> best(numberOfKeyframes(map), never);
+  std::vector<char> settled(numberOfKeyframes(map), 0);
+  const auto at = [](KeyframeId id) { return static_cast<std::size_t>(id); };
+  const std::vector<std::vector<KeyframeId>> linked = links(options, map);
+  KeyframeId last_settled = -1;
+  for (std::size_t count = 0; count < map.keyframes.size(); ++count) {
+    Keyframe* next = nullptr;
+    for (Keyframe& keyframe : map.keyframes) {
+      if (settled[at(keyframe.id)]) continue;
+      if (!next || best[at(keyframe.id)] < best[at(next->id)]) next = &keyframe;
+    }
+    if (best[at(next->id)] == never) {  // the first one, or one that nothing ties to the others
+      next->uncertainty = last_settled < 0 ? Matrix7d::Zero() : unknownFrom(map, *next, last_settled);
+    }
+    settled[at(next->id)] = 1;
+    last_settled = next->id;
+    for (const KeyframeId other : linked[at(next->id)]) {
+      if (settled[at(other)]) continue;
+      Keyframe& neighbour = map.keyframes[other];
+      const std::optional<Matrix7d> link = linkUncertainty(camera, options, map, neighbour, next->id);
+      if (!link) continue;
+      const Matrix7d found = through(map, neighbour, next->id, *link);
+      if (sizeOf(found) >= best[at(other)]) continue;
+      best[at(other)] = sizeOf(found);
+      neighbour.uncertainty = found;
+    }
+  }
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,33 @@
+// Beyond the paper: how far the map itself may have drifted. Tracking knows its pose in the map far better than the map
+// knows where it is: each keyframe was found from those before it. A keyframe's uncertainty is that of the best of the
+// keyframes that it shares points with, carried over to it, and what these points leave open between the two; so a
+// keyframe that sees old points again is as certain as they are.
+#pragma once
+
+#include "geometry/camera.h"
+#include "map/map.h"
+
+namespace edgeslam {
+
+struct MapUncertaintyOptions {
+  int neighbours = 8;      // most that are tried, those that share most points
+  int fewest_points = 12;  // that two keyframes must share to be known relative to each other
+  // Measurements of a point are not independent, nor of its neighbours on an edge: what they say of standard deviations
+  // is too little by these factors.
+  double pose_factor = 3;
+  double scale_factor = 3;
+  // What a way adds whatever is seen on it, for calibration and rolling shutters are never quite right: standard
+  // deviations after a way as long as the scene is deep, or a turn of 1 rad, growing with the root of the way.
+  double position_walk = 0.006;  // share of the scene's depth
+  double rotation_walk = 0.006;  // [rad]
+  double scale_walk = 0.02;
+};
+
+// Of the latest keyframe, from the others'.
+void addUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map);
+
+// Of every keyframe anew: after a loop was closed, or of a map that was read. The first keyframe is the world's origin
+// and its scale the map's unit, so that its own is 0.
+void renewUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map);
+
+}  // namespace edgeslam
