@@ -117,14 +117,18 @@ double fittingSquare_mm(const BoardRectangle& extent, double square_m, const Pag
   return factor > 0 ? std::floor(2e3 * square_m * factor + 1e-9) / 2 : 0;
 }
 
+bool fits(const BoardRectangle& extent, const PageSize& page) {
+  const double width = 1e3 * (extent.right_m - extent.left_m), height = 1e3 * (extent.bottom_m - extent.top_m);
+  return width <= page.width_mm - 2 * kMargin_mm + 1e-6 && height <= page.height_mm - 2 * kMargin_mm - kRuler_mm + 1e-6;
+}
+
 [[noreturn]] void refuse(const Board& board, const BoardRectangle& extent, const Paper& paper, double fitting_mm) {
   const double width = 1e3 * (extent.right_m - extent.left_m), height = 1e3 * (extent.bottom_m - extent.top_m);
-  const auto sides = std::minmax(width + 2 * kMargin_mm, height + 2 * kMargin_mm + kRuler_mm);
   std::string message = "the board " + boardText(board) + " does not fit " + paper.name + ": it is " +
                         millimetres(width) + " x " + millimetres(height) + " mm, and " + millimetres(kMargin_mm) +
                         " mm of margin and the ruler are added";
   for (const Paper& other : papers()) {
-    if (sides.first > other.width_mm || sides.second > other.height_mm) continue;
+    if (!fits(extent, {other.width_mm, other.height_mm}) && !fits(extent, {other.height_mm, other.width_mm})) continue;
     message += "; it would fit " + other.name;
     break;
   }
@@ -160,7 +164,7 @@ std::string boardPdf(const Board& board, const Paper& paper) {
   const PageSize size = upright_fits_mm >= turned_fits_mm ? upright : turned;
   const double width = 1e3 * (extent.right_m - extent.left_m), height = 1e3 * (extent.bottom_m - extent.top_m);
   const double free_height = size.height_mm - 2 * kMargin_mm - kRuler_mm;
-  if (width > size.width_mm - 2 * kMargin_mm + 1e-6 || height > free_height + 1e-6) {
+  if (!fits(extent, size)) {
     refuse(board, extent, paper, std::max(upright_fits_mm, turned_fits_mm));
   }
 
