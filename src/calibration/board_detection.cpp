@@ -6,6 +6,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/grid_tag_detection.h"
 #include "calibration/marker_detection.h"
 
 namespace edgeslam {
@@ -63,24 +64,10 @@ FoundCorners findChessboard(const cv::Mat& grey, const Board& board) {
 }
 
 std::vector<DetectedMarker> markersOf(const cv::Mat& grey, const Board& board) {
-  std::vector<DetectedMarker> markers;
-  const auto add = [&](const cv::Mat& image) {
-    for (const DetectedMarker& marker : detectMarkers(image, markerFamily(board), markerBorder(board))) {
-      const bool known = std::any_of(markers.begin(), markers.end(),
-                                     [&](const DetectedMarker& other) { return other.number == marker.number; });
-      if (!known && marker.number < markerCount(board)) markers.push_back(marker);
-    }
-  };
-  // The small squares join the tags' outlines at their corners; where black is eaten away, they come apart.
-  if (board.kind == BoardKind::aprilgrid) {
-    for (const int size : {3, 5}) {
-      cv::Mat eaten;
-      cv::dilate(grey, eaten, cv::getStructuringElement(cv::MORPH_ELLIPSE, {size, size}));
-      add(eaten);
-      if (static_cast<int>(markers.size()) == markerCount(board)) return markers;
-    }
-  }
-  add(grey);
+  std::vector<DetectedMarker> markers = detectMarkers(grey, markerFamily(board), markerBorder(board));
+  markers.erase(std::remove_if(markers.begin(), markers.end(),
+                               [&](const DetectedMarker& m) { return m.number >= markerCount(board); }),
+                markers.end());
   return markers;
 }
 
@@ -94,7 +81,7 @@ double meanSide(const std::vector<DetectedMarker>& markers) {
 }
 
 FoundCorners findAprilGrid(const cv::Mat& grey, const Board& board) {
-  const std::vector<DetectedMarker> markers = markersOf(grey, board);
+  const std::vector<DetectedMarker> markers = detectGridTags(grey, board);
   FoundCorners found;
   for (const DetectedMarker& marker : markers) {
     for (int i = 0; i < 4; ++i) {
@@ -209,6 +196,14 @@ std::optional<BoardSighting> detectBoard(const cv::Mat& grey, const Board& board
   return sighting;
 }
 
+cv::Size chessboardSeen(const cv::Mat& grey) {
+  cv::Mat pixels, meta;
+  if (!cv::findChessboardCornersSB(grey, {3, 3}, pixels, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_LARGER, meta)) {
+    return {};
+  }
+  return {std::max(meta.cols, meta.rows), std::min(meta.cols, meta.rows)};
+}
+
 std::string otherBoardSeen(const cv::Mat& grey, const Board& board) {
   for (const MarkerFamily family : {MarkerFamily::apriltag_36h11, MarkerFamily::aruco_4x4, MarkerFamily::aruco_5x5,
                                     MarkerFamily::aruco_6x6, MarkerFamily::aruco_7x7}) {
@@ -229,15 +224,12 @@ std::string otherBoardSeen(const cv::Mat& grey, const Board& board) {
              (border == 1 ? " cell" : " cells") + " wide";
     }
   }
-  cv::Mat pixels, meta;
-  if (!cv::findChessboardCornersSB(grey, {3, 3}, pixels, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_LARGER, meta)) {
-    return "";
-  }
-  const int longer = std::max(meta.cols, meta.rows), shorter = std::min(meta.cols, meta.rows);
-  const bool same = board.kind == BoardKind::chessboard && longer == std::max(board.columns, board.rows) &&
-                    shorter == std::min(board.columns, board.rows);
+  const cv::Size seen = chessboardSeen(grey);
+  if (seen.empty()) return "";
+  const bool same = board.kind == BoardKind::chessboard && seen.width == std::max(board.columns, board.rows) &&
+                    seen.height == std::min(board.columns, board.rows);
   if (same) return "";
-  return "a chessboard of " + std::to_string(longer) + " x " + std::to_string(shorter) + " inner corners";
+  return "a chessboard of " + std::to_string(seen.width) + " x " + std::to_string(seen.height) + " inner corners";
 }
 
 }  // namespace edgeslam

@@ -24,6 +24,9 @@ struct BoardSighting {
 // The board in a grey image (CV_8U); nothing where it is not found. A chessboard must be seen whole.
 std::optional<BoardSighting> detectBoard(const cv::Mat& grey, const Board& board);
 
+// The inner corners that a chessboard in the image has, the larger number first; empty where none is found.
+cv::Size chessboardSeen(const cv::Mat& grey);
+
 // What kind of board is seen instead where `board` was not found, or not whole: "a chessboard of 7 x 5 inner corners";
 // empty where none is.
 std::string otherBoardSeen(const cv::Mat& grey, const Board& board);

@@ -61,13 +61,14 @@ std::string boardMismatch(const std::vector<BoardView>& views, const Board& boar
   }
   if (board.kind == BoardKind::charuco) return "";
   // A part of a larger chessboard can be taken for the whole.
-  std::vector<std::string> seen;
+  std::vector<cv::Size> seen;
   for (std::size_t i = 0; i < std::min(kViewsLookedAt, views.size()); ++i) {
-    const std::string other = otherBoardSeen(views[i * views.size() / kViewsLookedAt].grey, board);
-    if (!other.empty()) seen.push_back(other);
+    const cv::Size size = chessboardSeen(views[i * views.size() / kViewsLookedAt].grey);
+    if (size.area() > board.columns * board.rows) seen.push_back(size);
   }
   if (seen.size() < 2 || seen[0] != seen[1]) return "";
-  return seen[0] + " is seen, not one of " + boardSizeText(board);
+  return "a chessboard of " + std::to_string(seen[0].width) + " x " + std::to_string(seen[0].height) +
+         " inner corners is seen, not one of " + boardSizeText(board);
 }
 
 }  // namespace edgeslam

@@ -36,20 +36,20 @@ void setParameters(Parameters& parameters, int border) {
 }
 
 #if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
-void detect(const cv::Mat& grey, MarkerFamily family, int border, CornersOfMarkers& corners,
-            std::vector<int>& numbers) {
+void detect(const cv::Mat& grey, MarkerFamily family, int border, CornersOfMarkers& corners, std::vector<int>& numbers,
+            CornersOfMarkers& rejected) {
   cv::aruco::DetectorParameters parameters;
   setParameters(parameters, border);
-  cv::aruco::ArucoDetector(dictionaryOf(family), parameters).detectMarkers(grey, corners, numbers);
+  cv::aruco::ArucoDetector(dictionaryOf(family), parameters).detectMarkers(grey, corners, numbers, rejected);
 }
 cv::Mat bytesOf(MarkerFamily family, int number) { return dictionaryOf(family).bytesList.rowRange(number, number + 1); }
 int cellsOf(MarkerFamily family) { return dictionaryOf(family).markerSize; }
 #else
-void detect(const cv::Mat& grey, MarkerFamily family, int border, CornersOfMarkers& corners,
-            std::vector<int>& numbers) {
+void detect(const cv::Mat& grey, MarkerFamily family, int border, CornersOfMarkers& corners, std::vector<int>& numbers,
+            CornersOfMarkers& rejected) {
   const cv::Ptr<cv::aruco::DetectorParameters> parameters = cv::aruco::DetectorParameters::create();
   setParameters(*parameters, border);
-  cv::aruco::detectMarkers(grey, dictionaryOf(family), corners, numbers, parameters);
+  cv::aruco::detectMarkers(grey, dictionaryOf(family), corners, numbers, parameters, rejected);
 }
 cv::Mat bytesOf(MarkerFamily family, int number) {
   return dictionaryOf(family)->bytesList.rowRange(number, number + 1);
@@ -63,9 +63,9 @@ bool isUpsideDown(MarkerFamily family) { return family == MarkerFamily::apriltag
 }  // namespace
 
 std::vector<DetectedMarker> detectMarkers(const cv::Mat& grey, MarkerFamily family, int border) {
-  CornersOfMarkers corners;
+  CornersOfMarkers corners, rejected;
   std::vector<int> numbers;
-  detect(grey, family, border, corners, numbers);
+  detect(grey, family, border, corners, numbers, rejected);
   std::vector<DetectedMarker> markers;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (std::count(numbers.begin(), numbers.end(), numbers[i]) > 1) continue;
@@ -78,6 +78,20 @@ std::vector<DetectedMarker> detectMarkers(const cv::Mat& grey, MarkerFamily fami
     markers.push_back(marker);
   }
   return markers;
+}
+
+std::vector<std::array<Eigen::Vector2d, 4>> darkQuadrangles(const cv::Mat& grey) {
+  CornersOfMarkers corners, rejected;
+  std::vector<int> numbers;
+  detect(grey, MarkerFamily::apriltag_36h11, 2, corners, numbers, rejected);
+  corners.insert(corners.end(), rejected.begin(), rejected.end());
+  std::vector<std::array<Eigen::Vector2d, 4>> found;
+  for (const std::vector<cv::Point2f>& quadrangle : corners) {
+    if (quadrangle.size() != 4) continue;
+    found.emplace_back();
+    for (std::size_t i = 0; i < 4; ++i) found.back()[i] = {quadrangle[i].x, quadrangle[i].y};
+  }
+  return found;
 }
 
 cv::Mat markerCells(MarkerFamily family, int number) {

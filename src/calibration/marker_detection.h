@@ -19,6 +19,9 @@ struct DetectedMarker {
 // `border`: width of the black border in cells.
 std::vector<DetectedMarker> detectMarkers(const cv::Mat& grey, MarkerFamily family, int border);
 
+// Quadrangles in the image that may be dark squares, clockwise from any corner; most are none.
+std::vector<std::array<Eigen::Vector2d, 4>> darkQuadrangles(const cv::Mat& grey);
+
 // The marker's cells without its border, CV_8U, 1 white, 0 black, as it is printed upright.
 cv::Mat markerCells(MarkerFamily family, int number);
 

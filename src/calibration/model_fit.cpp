@@ -15,6 +15,7 @@ namespace {
 constexpr double kDetectedSigma_px = 0.15;  // of corners as they are detected
 constexpr double kRefinedSigma_px = 0.01;   // least, whatever the grey values say
 constexpr double kOutlier = 5;              // standard deviations
+constexpr double kLeastOutlier_px = 0.1;    // nothing is left out for less
 constexpr double kOutlierView = 3;          // times the median view's error
 constexpr double kSignificant = 4;          // standard deviations of a coefficient
 constexpr std::size_t kFewestCorners = 6;   // of a view
@@ -57,9 +58,18 @@ double varianceFactor(const Camera& camera, const std::vector<ImagedView>& views
   return std::max(median(squares) / kMedianOfTwo, 1e-6);
 }
 
+// Of the corners' distances [px]: single bad ones do not make a bad view.
+double medianError(const Camera& camera, const FittedView& view) {
+  std::vector<double> errors;
+  for (const MeasuredCorner& corner : view.corners) {
+    errors.push_back(cornerError(camera, view.camera_T_board, corner).norm());
+  }
+  return median(errors);
+}
+
 void dropOutlierViews(const Camera& camera, ModelFit& fit) {
   std::vector<double> errors;
-  for (const ImagedView& view : fit.views) errors.push_back(rmsError(camera, {view.fitted}));
+  for (const ImagedView& view : fit.views) errors.push_back(medianError(camera, view.fitted));
   const double usual = median(errors);
   const double limit = std::max(kOutlierView * usual, 0.3);
   std::vector<ImagedView> kept;
@@ -81,7 +91,8 @@ int dropOutlierCorners(const Camera& camera, std::vector<ImagedView>& views) {
   for (ImagedView& view : views) {
     std::vector<MeasuredCorner> kept;
     for (const MeasuredCorner& corner : view.fitted.corners) {
-      if (whitenedError(camera, view.fitted, corner) <= limit) {
+      const double error_px = cornerError(camera, view.fitted.camera_T_board, corner).norm();
+      if (error_px < kLeastOutlier_px || whitenedError(camera, view.fitted, corner) <= limit) {
         kept.push_back(corner);
       } else {
         ++dropped;
@@ -105,14 +116,29 @@ void dropPoorViews(ModelFit& fit) {
   fit.views = std::move(kept);
 }
 
-// Returns how many corners could not be refined; they are left out.
+// All of the board's corners that should be in the image, where camera and pose say: also those that were not detected,
+// or not well.
+std::vector<MeasuredCorner> predictedCorners(const Camera& camera, const Pose& camera_T_board,
+                                             const std::vector<Eigen::Vector2d>& places) {
+  constexpr double kBorder_px = 3;
+  std::vector<MeasuredCorner> predicted;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    MeasuredCorner corner{static_cast<int>(i), places[i], {0, 0}};
+    corner.pixel = cornerError(camera, camera_T_board, corner);
+    if (insideImage(camera, corner.pixel, kBorder_px)) predicted.push_back(corner);
+  }
+  return predicted;
+}
+
+// Returns how many corners are not as they should look; they are left out.
 int refineCorners(const Camera& camera, const Board& board, std::vector<ImagedView>& views) {
+  const std::vector<Eigen::Vector2d> places = boardCorners(board);
   int lost = 0;
   for (ImagedView& view : views) {
+    const Pose& pose = view.fitted.camera_T_board;
     std::vector<MeasuredCorner> refined;
-    for (MeasuredCorner corner : view.fitted.corners) {
-      const std::optional<RefinedCorner> found =
-          refineCorner(view.grey, board, camera, view.fitted.camera_T_board, corner);
+    for (MeasuredCorner corner : predictedCorners(camera, pose, places)) {
+      const std::optional<RefinedCorner> found = refineCorner(view.grey, board, camera, pose, corner);
       if (!found) {
         ++lost;
         continue;
@@ -183,12 +209,12 @@ std::optional<ModelFit> fitModel(CameraModel model, cv::Size size, std::vector<I
 
   int unlike = 0, outliers = 0;
   for (int i = 0; i < kRefinements; ++i) {
-    unlike += refineCorners(fit.camera, board, fit.views);
+    unlike = refineCorners(fit.camera, board, fit.views);
     dropPoorViews(fit);
     if (fit.views.size() < 3) return std::nullopt;
     fitAll(fit.camera, fit.views, fit.options);
     addSignificantTerms(fit);
-    outliers += dropOutlierCorners(fit.camera, fit.views);
+    outliers = dropOutlierCorners(fit.camera, fit.views);
   }
   dropOutlierViews(fit.camera, fit);
   dropPoorViews(fit);
