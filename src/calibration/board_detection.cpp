@@ -146,21 +146,41 @@ double meanSquare(const std::vector<BoardCorner>& corners, const Board& board) {
   return count > 0 ? sum / count : 0;
 }
 
-// An edge of height h blurred with the deviation s has the slope h / (s sqrt(2 pi)) in its middle.
+// Steepest slope of the grey values along one edge of a corner, and along the other, which lies across: [grey/px].
+std::array<double, 2> slopesOfEdges(const cv::Mat& dx, const cv::Mat& dy) {
+  Eigen::Vector2d first(0, 0);
+  const auto gradientAt = [&](int y, int x) { return Eigen::Vector2d(dx.at<float>(y, x), dy.at<float>(y, x)); };
+  for (int y = 0; y < dx.rows; ++y) {
+    for (int x = 0; x < dx.cols; ++x) {
+      if (gradientAt(y, x).norm() > first.norm()) first = gradientAt(y, x);
+    }
+  }
+  double second = 0;
+  for (int y = 0; y < dx.rows; ++y) {
+    for (int x = 0; x < dx.cols; ++x) {
+      const Eigen::Vector2d gradient = gradientAt(y, x);
+      const bool lies_across = std::abs(gradient.dot(first)) < M_SQRT1_2 * gradient.norm() * first.norm();
+      if (lies_across) second = std::max(second, gradient.norm());
+    }
+  }
+  return {first.norm(), second};
+}
+
+// An edge of height h blurred with the deviation s has the slope h / (s sqrt(2 pi)) in its middle. Motion blurs one
+// edge of a corner more than the other: the worse one counts.
 double blurAt(const cv::Mat& grey, const Eigen::Vector2d& pixel, int half) {
   const cv::Rect window(static_cast<int>(std::lround(pixel.x())) - half,
                         static_cast<int>(std::lround(pixel.y())) - half, 2 * half + 1, 2 * half + 1);
   if ((window & cv::Rect(0, 0, grey.cols, grey.rows)) != window) return -1;
-  cv::Mat values, dx, dy, slope;
+  cv::Mat values, dx, dy;
   cv::GaussianBlur(grey(window), values, {0, 0}, 0.7);
-  double darkest = 0, brightest = 0, steepest = 0;
+  double darkest = 0, brightest = 0;
   cv::minMaxLoc(values, &darkest, &brightest);
   cv::Sobel(values, dx, CV_32F, 1, 0, 3, 1.0 / 8);
   cv::Sobel(values, dy, CV_32F, 0, 1, 3, 1.0 / 8);
-  cv::magnitude(dx, dy, slope);
-  cv::minMaxLoc(slope, nullptr, &steepest);
-  if (steepest <= 0) return -1;
-  const double seen = (brightest - darkest) / (steepest * std::sqrt(2 * CV_PI));
+  const std::array<double, 2> slopes = slopesOfEdges(dx, dy);
+  if (slopes[1] <= 0) return -1;
+  const double seen = (brightest - darkest) / (slopes[1] * std::sqrt(2 * CV_PI));
   constexpr double kOwn = 0.7 * 0.7 + 0.5;  // variance that the smoothing and Sobel's differences add
   return std::sqrt(std::max(0.0, seen * seen - kOwn));
 }

@@ -19,7 +19,7 @@ constexpr double kLeastOutlier_px = 0.1;    // nothing is left out for less
 constexpr double kOutlierView = 3;          // times the median view's error
 constexpr double kSignificant = 4;          // standard deviations of a coefficient
 constexpr std::size_t kFewestCorners = 6;   // of a view
-constexpr int kRefinements = 3;
+constexpr int kRefinements = 2;
 
 std::string errorText(double value) {
   std::array<char, 32> text{};

@@ -76,8 +76,6 @@ TEST_P(KnownCamera, IsFoundAgain) {
   const Calibration found = calibrate(selection.views(), board, selection.imageSize(), {truth.model});
   const CameraDifference difference = cameraDifference(truth, found.camera);
   RecordProperty("rms_px", std::to_string(difference.rms_px));
-  std::printf("%s", calibrationSummary(found, coverageOf(selection.views(), selection.imageSize())).c_str());
-  std::printf("difference rms %.3f max %.3f\n", difference.rms_px, difference.max_px);
   EXPECT_LT(difference.rms_px, 0.1);
   EXPECT_LT(difference.max_px, 0.4);
   EXPECT_NEAR(found.camera.fx / truth.fx, 1, 0.001);
@@ -90,7 +88,6 @@ TEST_P(KnownCamera, IsFoundAgain) {
   EXPECT_LT(std::abs(found.camera.cx - truth.cx), 5 * found.sigma(2) + 0.01);
   if (truth.model == CameraModel::pinhole_radial_tangential) {
     const CameraDifference plain = plainCalibration(selection.views(), board, truth);
-    std::printf("plain rms %.3f max %.3f\n", plain.rms_px, plain.max_px);
     EXPECT_LT(difference.rms_px, plain.rms_px + 0.01);
   }
 }

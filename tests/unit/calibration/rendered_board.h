@@ -178,6 +178,16 @@ inline std::vector<Hold> goodHolds(const Camera& camera) {
   return holds;
 }
 
+// Numbers of a chessboard's corners run from either end: here from the one near `first`.
+inline std::vector<BoardCorner> numberedFrom(std::vector<BoardCorner> corners, const Board& board,
+                                             const Eigen::Vector2d& first) {
+  const std::size_t count = boardCorners(board).size();
+  const bool reversed = board.kind == BoardKind::chessboard && corners.size() == count &&
+                        (corners.back().pixel - first).norm() < (corners.front().pixel - first).norm();
+  for (std::size_t i = 0; reversed && i < count; ++i) corners[i].number = static_cast<int>(count - 1 - i);
+  return corners;
+}
+
 // Views of the frames in their order, half a second apart.
 inline ViewSelection selectedFrom(const Board& board, const std::vector<cv::Mat>& frames) {
   ViewSelection selection(board, {});
