@@ -75,7 +75,6 @@ TEST_P(KnownCamera, IsFoundAgain) {
   ASSERT_GE(selection.views().size(), 16U) << selection.counts().no_board << " without the board";
   const Calibration found = calibrate(selection.views(), board, selection.imageSize(), {truth.model});
   const CameraDifference difference = cameraDifference(truth, found.camera);
-  RecordProperty("rms_px", std::to_string(difference.rms_px));
   EXPECT_LT(difference.rms_px, 0.1);
   EXPECT_LT(difference.max_px, 0.4);
   EXPECT_NEAR(found.camera.fx / truth.fx, 1, 0.001);
@@ -99,6 +98,40 @@ INSTANTIATE_TEST_SUITE_P(Boards, KnownCamera,
                                          Case{"aprilgrid:4x3:40mm:0.3", fisheyeCamera(), "aprilgrid_fisheye"},
                                          Case{"chessboard:8x5:30mm", fisheyeCamera(), "chessboard_fisheye"}),
                          [](const auto& known) { return known.param.name; });
+
+TEST(Calibration, OfTheSharedBoardIsBetterThanThePlainOne) {
+  const std::string folder = std::string(EDGESLAM_SOURCE_DIR) + "/../shared/data/calib_board";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const Board board = parseBoard("chessboard:9x6:30mm");
+  const std::unique_ptr<FrameSource> source = openFrameSource(folder);
+  ViewSelection selection(board, {});
+  while (const std::optional<Frame> frame = source->next()) selection.add(frame->index, frame->time_ns, frame->grey);
+  selection.end();
+  const Camera truth = *source->camera();
+  const Calibration found = calibrate(selection.views(), board, selection.imageSize(), {truth.model});
+  const CameraDifference difference = cameraDifference(truth, found.camera);
+  const CameraDifference plain = plainCalibration(selection.views(), board, truth);
+  EXPECT_LT(difference.rms_px, 0.1);
+  EXPECT_LT(difference.max_px, 0.3);
+  EXPECT_LT(difference.rms_px, plain.rms_px);
+  EXPECT_NEAR(found.camera.fx, truth.fx, 0.1);
+  EXPECT_NEAR(found.camera.cx, truth.cx, 0.15);
+}
+
+TEST(Calibration, IsWrittenAsTheProgramReadsIt) {
+  const TemporaryFolder folder;
+  Calibration calibration;
+  for (const Camera& camera : {usualCamera(), fisheyeCamera()}) {
+    calibration.camera = camera;
+    calibration.sigma.setConstant(0.001);
+    const std::string path =
+        folder.write("camera.yaml", calibrationFileText(calibration, Board{}, "a folder\nwith: a line break"));
+    const Camera read = readCalibration(path);
+    EXPECT_EQ(read.model, camera.model);
+    EXPECT_EQ(read.width, camera.width);
+    EXPECT_LT(cameraDifference(camera, read).max_px, 1e-3);
+  }
+}
 
 }  // namespace
 }  // namespace edgeslam
