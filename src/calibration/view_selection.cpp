@@ -11,7 +11,7 @@
 namespace edgeslam {
 namespace {
 
-// Views of a video differ where one of these does by so much.
+// Views differ where one of these does by so much.
 constexpr double kNewPlace = 0.08;     // of the image's width or height
 constexpr double kNewSize = 0.15;      // relative
 constexpr double kNewTilt_rad = 0.14;  // 8 degrees
@@ -66,13 +66,13 @@ ViewLook lookOf(const BoardSighting& sighting, const Board& board, cv::Size size
   return look;
 }
 
-bool ViewSelection::isNew(const ViewLook& look, double share) const {
+bool ViewSelection::isNew(const ViewLook& look) const {
   return std::none_of(views_.begin(), views_.end(), [&](const BoardView& view) {
     const ViewLook& other = view.look;
-    return (look.centre - other.centre).lpNorm<Eigen::Infinity>() < share * kNewPlace &&
-           std::abs(std::log(look.size / other.size)) < share * kNewSize &&
-           (look.tilt_rad - other.tilt_rad).lpNorm<Eigen::Infinity>() < share * kNewTilt_rad &&
-           angleBetween(look.roll_rad, other.roll_rad) < share * kNewRoll_rad;
+    return (look.centre - other.centre).lpNorm<Eigen::Infinity>() < kNewPlace &&
+           std::abs(std::log(look.size / other.size)) < kNewSize &&
+           (look.tilt_rad - other.tilt_rad).lpNorm<Eigen::Infinity>() < kNewTilt_rad &&
+           angleBetween(look.roll_rad, other.roll_rad) < kNewRoll_rad;
   });
 }
 
@@ -89,8 +89,6 @@ ViewDecision ViewSelection::add(std::int64_t frame, std::int64_t time_ns, const 
                      std::to_string(size_.height) + "; a calibration is for one image size");
   }
   const std::int64_t first_of_all = counts_.frames++;
-  const bool is_still = first_of_all == 0 || static_cast<double>(time_ns - last_frame_ns_) * 1e-9 >= options_.soon_s;
-  last_frame_ns_ = time_ns;
   const double since_s = first_of_all == 0 ? 1e9 : static_cast<double>(time_ns - last_looked_ns_) * 1e-9;
   const bool full = views_.size() >= options_.most_views;
   if (full || (waiting_.empty() && since_s < options_.least_interval_s)) return ViewDecision::not_looked_at;
@@ -123,7 +121,7 @@ ViewDecision ViewSelection::add(std::int64_t frame, std::int64_t time_ns, const 
     return tell(ViewDecision::blurred);
   }
   BoardView view{frame, time_ns, {}, *sighting, lookOf(*sighting, board_, size_, std::max(size_.width, size_.height))};
-  if (!isNew(view.look, is_still ? options_.stills_differ : 1)) {
+  if (!isNew(view.look)) {
     ++counts_.not_new;
     return tell(ViewDecision::not_new);
   }

@@ -34,8 +34,7 @@ struct SelectionOptions {
   double largest_blur_squares = 0.15;  // likewise, over a square's side
   double largest_motion_px = 1.5;      // of the corners from a frame to the next, where that comes soon after
   double soon_s = 0.2;                 // frames farther apart are stills: each stands for itself
-  double stills_differ = 0.25;    // stills are taken where they differ by this share of what frames of a video must
-  double least_interval_s = 0.1;  // between frames that are looked at
+  double least_interval_s = 0.1;       // between frames that are looked at
   std::size_t most_views = 100;
 };
 
@@ -61,8 +60,7 @@ class ViewSelection {
   const cv::Mat& lastWithoutBoard() const { return last_without_board_; }  // empty where the board was always found
 
  private:
-  // `share`: of the usual differences that are enough.
-  bool isNew(const ViewLook& look, double share) const;
+  bool isNew(const ViewLook& look) const;
   ViewDecision take(BoardView view);
 
   Board board_;
@@ -70,7 +68,7 @@ class ViewSelection {
   cv::Size size_;
   std::vector<BoardView> views_, waiting_;  // waiting: none or one
   SelectionCounts counts_;
-  std::int64_t last_frame_ns_ = 0, last_looked_ns_ = 0;
+  std::int64_t last_looked_ns_ = 0;
   cv::Mat last_without_board_;
 };
 
