@@ -10,6 +10,7 @@
 #include <new>
 #include <string>
 
+#include "app/calibrate_command.h"
 #include "app/cameras_command.h"
 #include "app/check_config_command.h"
 #include "app/evaluate_command.h"
@@ -47,6 +48,7 @@ int parseAndRun(int argc, const char* const* argv) {
   addEvaluateCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
   addListenCommand(app, exit_code);
+  addCalibrateCommand(app, exit_code);
   addCheckConfigCommand(app, exit_code);
   addCamerasCommand(app, exit_code);
   addRecordCommand(app, exit_code);

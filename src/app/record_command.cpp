@@ -1,6 +1,5 @@
 #include "app/record_command.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +12,7 @@
 #include "app/camera_recording.h"
 #include "app/command_line.h"
 #include "app/configuration.h"
+#include "app/end_signals.h"
 #include "app/open_camera.h"
 #include "dataset/calibration_file.h"
 
@@ -24,29 +24,6 @@ struct RecordOptions {
   std::int64_t frames = 0;
   double seconds = 0;
   double free_mib = 256;
-};
-
-// Blocks the signals that ask a program to end and tells whether one came, so that nothing is cut off in the middle.
-class EndSignals {
- public:
-  EndSignals() {
-    sigemptyset(&signals_);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals_, number);
-    pthread_sigmask(SIG_BLOCK, &signals_, &before_);
-  }
-  ~EndSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  EndSignals(const EndSignals&) = delete;
-  EndSignals& operator=(const EndSignals&) = delete;
-
-  bool came() {
-    const timespec at_once{};
-    came_ = came_ || sigtimedwait(&signals_, nullptr, &at_once) > 0;
-    return came_;
-  }
-
- private:
-  sigset_t signals_{}, before_{};
-  bool came_ = false;
 };
 
 std::string summary(const CameraRecordingCounts& counts, std::int64_t bytes) {
