@@ -17,6 +17,7 @@
 #include "benchmark/known_calibration.h"
 #include "dataset/atomic_file.h"
 #include "dataset/frame_source.h"
+#include "dataset/recording_layout.h"
 #include "dataset/recording_source.h"
 #include "dataset/report.h"
 
