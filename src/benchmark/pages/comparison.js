@@ -22,7 +22,7 @@ function changeText(figure) {
 function figureText(value, unit) {
   if (!known(value)) return '-';
   const text = Number.isInteger(value) && !unit ? whole(value) : unit === '%' ? value.toFixed(1) : formatNumber(value);
-  return unit ? `${text} ${unit}` : text;
+  return unit ? `${text}\u00a0${unit}` : text;
 }
 
 function drawFigures() {
@@ -93,16 +93,14 @@ function drawStates(host, run, label, range) {
 const cssName = (state) => ['initialising', 'tracking', 'predicted', 'recovered', 'relocalised', 'lost'].includes(state) ? state : 'axis';
 
 function drawTimes(range) {
-  drawLegend(byId('time-legend'), bothNames);
   const all = first.frame_times.values_ms.concat(second.frame_times.values_ms).sort((a, b) => a - b);
-  const high = Math.max(1.15 * (all[Math.floor(0.99 * (all.length - 1))] || 0), 1e-3);
-  timeChart(byId('times'), Object.assign({ height: 190, low: 0, high, unit: 'ms', label: 'Tracking time of each frame; the table below gives the figures',
-    content: (svg, x, y) => [first, second].forEach((run, k) => svg.append(svgElement('path', { d: linePath(run.frame_times.times, run.frame_times.values_ms, x, (value) => y(Math.min(value, high)), Infinity),
-      class: 'line', style: `stroke: ${colours[k]}; stroke-width: 1.1; opacity: .85` + (k ? '; stroke-dasharray: 4 2' : '') }))),
-    describe: (time) => `${time.toFixed(2)} s` + [first, second].map((run, k) => {
-      const i = nearestIndex(run.frame_times.times, time);
-      return i < 0 ? '' : `\n${'AB'[k]}: ${run.frame_times.values_ms[i].toFixed(2)} ms`;
-    }).join('') }, range));
+  const high = Math.max(1.15 * (all[Math.floor(0.99 * (all.length - 1))] || 0), 1e-3);  // the same for both
+  [first, second].forEach((run, k) => {
+    const { times, values_ms: values } = run.frame_times;
+    timeChart(byId(['first-times', 'second-times'][k]), Object.assign({ height: 130, low: 0, high, unit: 'ms', label: `Tracking time of each frame of ${'AB'[k]}; the table below gives the figures`,
+      content: (svg, x, y) => svg.append(svgElement('path', { d: linePath(times, values, x, (value) => y(Math.min(value, high)), Infinity), class: 'line', style: `stroke: ${colours[k]}; stroke-width: 1.1` })),
+      describe: (time) => { const i = nearestIndex(times, time); return i < 0 ? '' : `${'AB'[k]}, ${time.toFixed(2)} s: ${values[i].toFixed(2)} ms`; } }, range));
+  });
 }
 
 function drawStages() {

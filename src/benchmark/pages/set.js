@@ -18,7 +18,8 @@ function drawHeadline() {
   const speeds = done.map((run) => run.figures.real_time_ratio).filter((ratio) => ratio > 0);
   const tiles = [[`${runs.length - failed.length} of ${runs.length}`, 'runs have poses', 'main']];
   if (errors.length) tiles.push([formatNumber(median(errors)) + ' cm', 'median of the trajectory errors', '']);
-  if (done.length) tiles.push([percent(Math.min(...done.map((run) => run.figures.coverage))), 'least coverage from the first pose on', '']);
+  const posed = done.filter((run) => !run.failed);
+  if (posed.length) tiles.push([percent(Math.min(...posed.map((run) => run.figures.coverage))), 'least coverage from the first pose on', '']);
   if (speeds.length) tiles.push([formatNumber(Math.min(...speeds)) + ' ×', 'real time, the slowest run', '']);
   drawTiles(byId('headline'), tiles);
   byId('note').textContent = page.note;
@@ -74,9 +75,9 @@ function drawSpeed() {
 function drawLoops() {
   const loops = done.flatMap((run) => run.figures.loops.map((loop) => ({ run, loop })));
   byId('loops-section').hidden = loops.length === 0;
-  const text = (error) => error ? (100 * error.rmse_m).toFixed(2) + ' cm' : '-';
+  const text = (error) => error ? formatNumber(100 * error.rmse_m) + ' cm' : '-';
   drawTable(byId('loops'), ['sequence', 'frame', 'found', 'error before', 'error after', ''], loops.map(({ run, loop }) => {
-    const verdict = !loop.before || !loop.after ? 'unknown' : loop.after.rmse_m < 0.99 * loop.before.rmse_m ? 'better' : loop.after.rmse_m > 1.01 * loop.before.rmse_m ? 'worse' : 'same';
+    const verdict = !loop.before || !loop.after ? 'unknown' : loop.after.rmse_m < 0.95 * loop.before.rmse_m ? 'better' : loop.after.rmse_m > 1.05 * loop.before.rmse_m ? 'worse' : 'same';
     return [nameCell(run), cell(run, whole(loop.frame)), cell(run, loop.how), cell(run, text(loop.before)), cell(run, text(loop.after)),
       { text: { better: '▲ better', worse: '▼ worse', same: '= about the same', unknown: '-' }[verdict], kind: verdict }];
   }));
