@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dataset/run_files.h"
+#include "dataset/run_summary.h"
 #include "unit/dataset/made_run.h"
 #include "unit/dataset/temporary_folder.h"
 
