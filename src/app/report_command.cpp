@@ -15,7 +15,7 @@ namespace {
 
 struct ReportArguments {
   std::vector<std::string> runs;
-  std::string output = "report.html";
+  std::string output = "runs.html";
 };
 
 bool isBenchmark(const std::string& folder) {
