@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 namespace edgeslam {
@@ -46,9 +47,10 @@ std::string trimmed(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
 }
 
-// "section.key" and the value of every line.
+// "section.key" and the value of every line; of a key that is repeated the first.
 std::vector<std::pair<std::string, std::string>> settingsOf(const std::string& configuration) {
   std::vector<std::pair<std::string, std::string>> settings;
+  std::set<std::string> seen;
   std::istringstream lines(configuration);
   std::string line, section;
   while (std::getline(lines, line)) {
@@ -60,7 +62,8 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const std::string& c
     const bool is_indented = line.front() == ' ' || line.front() == '\t';
     if (!is_indented) section = key;
     if (!is_indented && value.empty()) continue;
-    settings.emplace_back(is_indented && !section.empty() ? std::string(section).append(".").append(key) : key, value);
+    const std::string name = is_indented && !section.empty() ? std::string(section).append(".").append(key) : key;
+    if (seen.insert(name).second) settings.emplace_back(name, value);
   }
   return settings;
 }

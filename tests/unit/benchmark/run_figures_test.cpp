@@ -112,7 +112,7 @@ TEST(RunFigures, cutAtAnyByteItIsRefused) {
   const TemporaryFolder folder;
   const std::string run = writeMadeRun(folder, "run", makeRun());
   const std::string text = fileContent(run + "/summary.json");
-  for (std::size_t size = 0; size + 2 < text.size(); size += 97) {
+  for (std::size_t size = 0; size + 2 < text.size(); size += 397) {
     std::ofstream(run + "/summary.json") << text.substr(0, size);
     expectInputError([&] { readRunFigures(run); }, "summary.json", "line");
   }
