@@ -66,9 +66,11 @@ function drawDistance(range) {
   const factor = inMetres ? 100 : 1;
   const unit = inMetres ? 'cm' : 'map units';
   const values = page.distance.distances.map((value) => factor * value);
-  byId('distance-caption').textContent = `Of poses at the same times: RMSE ${formatNumber(factor * page.distance.rmse)} ${unit}, median ${formatNumber(factor * page.distance.median)}, largest ${formatNumber(factor * page.distance.max)}.`;
-  timeChart(byId('distance'), Object.assign({ height: 190, low: 0, high: Math.max(1.06 * factor * page.distance.max, 1e-9), unit,
-    label: `Distance between the runs over time, at most ${formatNumber(factor * page.distance.max)} ${unit}`,
+  const text = (value) => value < 1e-9 ? '0' : formatNumber(factor * value);  // below it is rounding
+  const largest = Math.max(factor * page.distance.max, inMetres ? 1e-3 : 1e-5);
+  byId('distance-caption').textContent = `Of poses at the same times: RMSE ${text(page.distance.rmse)} ${unit}, median ${text(page.distance.median)}, largest ${text(page.distance.max)}.`;
+  timeChart(byId('distance'), Object.assign({ height: 190, low: 0, high: 1.06 * largest, unit,
+    label: `Distance between the runs over time, at most ${text(page.distance.max)} ${unit}`,
     content: (svg, x, y) => svg.append(svgElement('path', { d: linePath(page.distance.times, values, x, y, gap), class: 'line', style: 'stroke: var(--estimate)' })),
     describe: (time) => { const i = nearestIndex(page.distance.times, time); return i < 0 || Math.abs(page.distance.times[i] - time) > gap ? '' : `${time.toFixed(2)} s: ${formatNumber(values[i])} ${unit}`; } }, range));
 }
