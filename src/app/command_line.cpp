@@ -10,6 +10,7 @@
 #include <new>
 #include <string>
 
+#include "app/benchmark_command.h"
 #include "app/calibrate_command.h"
 #include "app/cameras_command.h"
 #include "app/check_config_command.h"
@@ -17,6 +18,7 @@
 #include "app/listen_command.h"
 #include "app/record_command.h"
 #include "app/replay_command.h"
+#include "app/report_command.h"
 #include "app/run_command.h"
 #include "app/simulate_command.h"
 #include "edgeslam/input_error.h"
@@ -46,6 +48,8 @@ int parseAndRun(int argc, const char* const* argv) {
   addRunCommand(app, exit_code);
   addReplayCommand(app, exit_code);
   addEvaluateCommand(app, exit_code);
+  addReportCommand(app, exit_code);
+  addBenchmarkCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
   addListenCommand(app, exit_code);
   addCalibrateCommand(app, exit_code);

@@ -76,42 +76,54 @@ fs::path findEurocCamera(const fs::path& folder) {
   return {};
 }
 
-std::unique_ptr<FrameSource> openFolder(const fs::path& folder) {
-  if (isRecording(folder.string())) return std::make_unique<RecordingSource>(readRecording(folder.string()));
-  if (isFile(folder / "rgb.txt")) {
-    return makeFolderSource("TUM RGB-D folder", readTumImageList((folder / "rgb.txt").string()),
-                            findCompanions({folder}));
-  }
-  if (isFile(folder / "associations.txt")) {
-    return makeFolderSource("TUM RGB-D folder (associations.txt)",
-                            readTumImageList((folder / "associations.txt").string()), findCompanions({folder}));
-  }
-  const fs::path euroc_camera = findEurocCamera(folder);
-  if (!euroc_camera.empty()) {
-    // The ground truth lies beside cam0, and a calibration of the user's own beside mav0.
-    std::vector<fs::path> folders{euroc_camera};
-    if (euroc_camera != folder) folders.push_back(euroc_camera.parent_path());
-    if (folders.back() != folder) folders.push_back(folder);
-    if (euroc_camera == folder) folders.push_back(fs::absolute(folder / "").parent_path().parent_path());
-    return makeFolderSource("EuRoC folder", readEurocImageList((euroc_camera / "data.csv").string()),
-                            findCompanions(folders));
-  }
-
+std::vector<std::string> videosIn(const fs::path& folder) {
   const std::vector<std::string> names = fileNames(folder);
   std::vector<std::string> videos;
   std::copy_if(names.begin(), names.end(), std::back_inserter(videos), isVideoFileName);
+  return videos;
+}
+
+std::unique_ptr<FrameSource> openEuroc(const fs::path& folder) {
+  const fs::path camera = findEurocCamera(folder);
+  // The ground truth lies beside cam0, and a calibration of the user's own beside mav0.
+  std::vector<fs::path> folders{camera};
+  if (camera != folder) folders.push_back(camera.parent_path());
+  if (folders.back() != folder) folders.push_back(folder);
+  if (camera == folder) folders.push_back(fs::absolute(folder / "").parent_path().parent_path());
+  return makeFolderSource("EuRoC folder", readEurocImageList((camera / "data.csv").string()), findCompanions(folders));
+}
+
+std::unique_ptr<FrameSource> openVideoFolder(const fs::path& folder) {
+  const std::vector<std::string> videos = videosIn(folder);
   if (videos.size() > 1) {
     throw InputError(folder.string() + ": holds several videos (" + videos[0] + ", " + videos[1] +
                      "); give the path of one of them");
   }
-  if (videos.size() == 1) {
-    const std::string video = (folder / videos[0]).string();
-    const fs::path times = folder / "times.txt";
-    if (isFile(times)) return makeStampedVideoSource(video, times.string(), findCompanions({folder}));
-    return makeVideoSource(video, findCompanions({folder}));
-  }
-  if (std::any_of(names.begin(), names.end(), isImageFileName)) {
-    return makeFolderSource("folder of images", imagesNamedByTime(folder.string()), findCompanions({folder}));
+  const std::string video = (folder / videos[0]).string();
+  const fs::path times = folder / "times.txt";
+  if (isFile(times)) return makeStampedVideoSource(video, times.string(), findCompanions({folder}));
+  return makeVideoSource(video, findCompanions({folder}));
+}
+
+std::unique_ptr<FrameSource> openFolder(const fs::path& folder) {
+  switch (folderKind(folder.string())) {
+    case FolderKind::recording:
+      return std::make_unique<RecordingSource>(readRecording(folder.string()));
+    case FolderKind::tum:
+      return makeFolderSource("TUM RGB-D folder", readTumImageList((folder / "rgb.txt").string()),
+                              findCompanions({folder}));
+    case FolderKind::associations:
+      return makeFolderSource("TUM RGB-D folder (associations.txt)",
+                              readTumImageList((folder / "associations.txt").string()), findCompanions({folder}));
+    case FolderKind::euroc:
+      return openEuroc(folder);
+    case FolderKind::stamped_video:
+    case FolderKind::video:
+      return openVideoFolder(folder);
+    case FolderKind::images:
+      return makeFolderSource("folder of images", imagesNamedByTime(folder.string()), findCompanions({folder}));
+    case FolderKind::none:
+      break;
   }
   throw InputError(folder.string() + (fs::is_empty(folder) ? ": is an empty folder" : ": holds no frames") +
                    "; expected recording.txt (a recording), rgb.txt (TUM RGB-D), associations.txt (ICL-NUIM), "
@@ -120,6 +132,19 @@ std::unique_ptr<FrameSource> openFolder(const fs::path& folder) {
 }
 
 }  // namespace
+
+FolderKind folderKind(const std::string& folder) {
+  const fs::path path(folder);
+  if (isRecording(folder)) return FolderKind::recording;
+  if (isFile(path / "rgb.txt")) return FolderKind::tum;
+  if (isFile(path / "associations.txt")) return FolderKind::associations;
+  if (!findEurocCamera(path).empty()) return FolderKind::euroc;
+  const std::vector<std::string> names = fileNames(path);
+  if (std::any_of(names.begin(), names.end(), isVideoFileName)) {
+    return isFile(path / "times.txt") ? FolderKind::stamped_video : FolderKind::video;
+  }
+  return std::any_of(names.begin(), names.end(), isImageFileName) ? FolderKind::images : FolderKind::none;
+}
 
 std::unique_ptr<FrameSource> openFrameSource(const std::string& path) {
   std::error_code error;

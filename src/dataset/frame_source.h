@@ -37,6 +37,12 @@ class FrameSource {
   virtual std::string groundTruthPath() const = 0;
 };
 
+// What a folder holds, by the names of its files alone, in the order in which openFrameSource looks.
+enum class FolderKind { recording, tum, associations, euroc, stamped_video, video, images, none };
+
+// Throws InputError where the folder cannot be listed.
+FolderKind folderKind(const std::string& folder);
+
 // Throws InputError where `path` is missing, empty or of no known kind, and where time stamps go back or repeat.
 std::unique_ptr<FrameSource> openFrameSource(const std::string& path);
 

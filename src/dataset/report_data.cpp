@@ -304,17 +304,22 @@ double medianFrameInterval(const RunResult& result) {
 }  // namespace
 
 DisplayFrame displayFrame(const RunResult& result, const RunSummary& summary) {
+  std::optional<Similarity> reference_T_world;
+  if (summary.errors.trajectory) reference_T_world = summary.errors.trajectory->reference_T_estimate;
+  return displayFrame(finalTrajectory(result), reference_T_world);
+}
+
+DisplayFrame displayFrame(const Trajectory& trajectory, const std::optional<Similarity>& reference_T_world) {
   DisplayFrame frame;
   Eigen::Matrix3d turn;  // rows: the display's axes
-  if (!summary.errors.trajectory) {
+  if (!reference_T_world) {
     turn << 1, 0, 0, 0, 0, 1, 0, -1, 0;
     frame.display_T_world.rotation = Eigen::Quaterniond(turn);
     return frame;
   }
-  const Similarity& reference_T_world = summary.errors.trajectory->reference_T_estimate;
   Eigen::Vector3d camera_up = Eigen::Vector3d::Zero();
-  for (const StampedPose& pose : finalTrajectory(result)) {
-    camera_up -= reference_T_world.rotation * (pose.world_T_camera.rotation * Eigen::Vector3d::UnitY());
+  for (const StampedPose& pose : trajectory) {
+    camera_up -= reference_T_world->rotation * (pose.world_T_camera.rotation * Eigen::Vector3d::UnitY());
   }
   camera_up.normalize();
   turn.setIdentity();
@@ -338,7 +343,7 @@ DisplayFrame displayFrame(const RunResult& result, const RunSummary& summary) {
   frame.display_R_reference = Eigen::Quaterniond(turn);
   Similarity display_T_reference;
   display_T_reference.rotation = frame.display_R_reference;
-  frame.display_T_world = display_T_reference * reference_T_world;
+  frame.display_T_world = display_T_reference * *reference_T_world;
   frame.aligned = true;
   return frame;
 }

@@ -25,6 +25,7 @@ struct DisplayFrame {
 // its axes is clearly the upward one (ICL-NUIM's y, say); otherwise the world frame with -y (up in the first keyframe's
 // image) up.
 DisplayFrame displayFrame(const RunResult& result, const RunSummary& summary);
+DisplayFrame displayFrame(const Trajectory& trajectory, const std::optional<Similarity>& reference_T_world);
 
 nlohmann::ordered_json reportData(const RunResult& result, const RunSummary& summary, const RunDescription& description,
                                   const std::optional<Trajectory>& ground_truth);

@@ -6,10 +6,8 @@
 #include <regex>
 
 namespace edgeslam {
-namespace {
 
-// "/data/rgbd_dataset_freiburg2_desk/" and "fr2_desk.mp4" become "fr2_desk"; ICL-NUIM's office names become "officeN".
-std::string shortName(std::string name) {
+std::string shortSequenceName(std::string name) {
   while (!name.empty() && name.back() == '/') name.pop_back();
   name = name.substr(name.find_last_of('/') + 1);
   std::transform(name.begin(), name.end(), name.begin(),
@@ -25,8 +23,6 @@ std::string shortName(std::string name) {
   return name;
 }
 
-}  // namespace
-
 std::optional<PublishedErrors> publishedErrors(const std::string& sequence) {
   static const std::array<PublishedErrors, 11> published{{
       {"fr1_xyz", "1.31", "0.90", "9.00", "16.51", "1.21"},
@@ -41,7 +37,7 @@ std::optional<PublishedErrors> publishedErrors(const std::string& sequence) {
       {"office2", "2.97", "3.75", "X", "X", "-"},
       {"office3", "4.58", "16.18", "X", "X", "-"},
   }};
-  const std::string name = shortName(sequence);
+  const std::string name = shortSequenceName(sequence);
   const auto found = std::find_if(published.begin(), published.end(),
                                   [&name](const PublishedErrors& row) { return row.sequence == name; });
   if (found == published.end()) return std::nullopt;

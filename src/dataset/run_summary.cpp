@@ -101,12 +101,16 @@ Trajectory trajectoryOf(const std::vector<TimedPose>& poses) {
 
 ordered_json errorJson(const std::optional<AbsoluteError>& error) {
   if (!error) return nullptr;
+  const Eigen::Quaterniond& q = error->reference_T_estimate.rotation;
+  const Eigen::Vector3d& t = error->reference_T_estimate.translation;
   return {{"pairs", error->pairs},
           {"rmse_m", error->translation.rmse},
           {"mean_m", error->translation.mean},
           {"median_m", error->translation.median},
           {"max_m", error->translation.max},
-          {"scale", error->reference_T_estimate.scale}};
+          {"scale", error->reference_T_estimate.scale},
+          {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+          {"translation_m", {t.x(), t.y(), t.z()}}};
 }
 
 ordered_json optionalJson(const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(); }

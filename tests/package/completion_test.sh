@@ -25,7 +25,7 @@ expect() {
 subcommands=$("$program" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p' | sort)
 [[ $(wc -l <<< "$subcommands") -ge 8 ]] || { echo "subcommands of --help not understood: $subcommands"; exit 1; }
 expect "$(offered '' | grep -v '^--')" "$subcommands"
-expect "$(offered 're')" "$(printf 'record\nreplay')"
+expect "$(offered 're')" "$(printf 'record\nreplay\nreport')"
 for subcommand in $subcommands; do
   options=$("$program" "$subcommand" --help | grep -oE '(^|,|  )--[a-z-]+' | grep -oE '\-\-[a-z-]+' | sort -u)
   [[ -n $options ]] || { echo "$subcommand: no options in --help"; exit 1; }

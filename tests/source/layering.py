@@ -8,7 +8,7 @@ import re
 import sys
 import tempfile
 
-ORDER = ["image", "geometry", "edges", "flow", "map", "adjustment", "tracking", "mapping", "places", "pipeline", "dataset", "calibration", "drivers", "app", "library"]
+ORDER = ["image", "geometry", "edges", "flow", "map", "adjustment", "tracking", "mapping", "places", "pipeline", "dataset", "calibration", "benchmark", "drivers", "app", "library"]
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/]+)/')
 
 

@@ -36,7 +36,8 @@ TEST(Command, TellsItsVersion) {
 TEST(Command, HelpNamesTheSubcommandsAndEachHasItsOwn) {
   const Outcome outcome = runInShell("--help");
   EXPECT_EQ(outcome.exit_code, 0);
-  for (const std::string name : {"replay", "evaluate", "simulate", "listen", "calibrate", "check-config"}) {
+  for (const std::string name :
+       {"replay", "evaluate", "report", "benchmark", "simulate", "listen", "calibrate", "check-config"}) {
     EXPECT_NE(outcome.output.find("\n  " + name + " "), std::string::npos) << name;
     const Outcome help = runInShell(name + " --help");
     EXPECT_EQ(help.exit_code, 0) << name;

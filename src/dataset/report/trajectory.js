@@ -11,11 +11,12 @@ function growBox(box, positions, a, b) {
   }
 }
 
-// run: the report's data; a, b: which axis goes right and which up.
+// run: the report's data; a, b: which axis goes right and which up. `other`, where there is one, is a second trajectory to compare with.
 function planeView(host, run, a, b, label, cursor) {
   const box = { low: [Infinity, Infinity], high: [-Infinity, -Infinity] };
   growBox(box, run.trajectory.positions, a, b);
   if (run.truth) growBox(box, run.truth.positions, a, b);
+  if (run.other) growBox(box, run.other.positions, a, b);
   if (!Number.isFinite(box.low[0])) {
     host.innerHTML = '<p class="notice">No frame has a pose: there is nothing to draw.</p>';
     return;
@@ -52,7 +53,7 @@ function planeView(host, run, a, b, label, cursor) {
       svgElement('text', { x: 2, y: 12 }, `${run.axes[b]} [${run.unit}]`));
 
     const plot = svgElement('g', { 'clip-path': `url(#${clip})` });
-    const path = (series, colour, strokeWidth) => {
+    const path = (series, colour, strokeWidth, dashes = 'none') => {
       if (!series) return;
       let line = '';
       series.times.forEach((time, i) => {
@@ -62,11 +63,12 @@ function planeView(host, run, a, b, label, cursor) {
         const broken = i === 0 || time - series.times[i - 1] > gap;
         line += (broken || !line ? 'M' : 'L') + x(px).toFixed(1) + ' ' + y(py).toFixed(1);
       });
-      plot.append(svgElement('path', { d: line, class: 'line', style: `stroke: ${colour}; stroke-width: ${strokeWidth}` }));
+      plot.append(svgElement('path', { d: line, class: 'line', style: `stroke: ${colour}; stroke-width: ${strokeWidth}; stroke-dasharray: ${dashes}` }));
     };
     path(run.truth, 'var(--truth)', 4.5);
     path(run.live, 'var(--live)', 0.9);
     path(run.trajectory, 'var(--estimate)', 1.8);
+    path(run.other, 'var(--live)', 1.8, '6 4');
     for (const keyframe of run.keyframes) {
       const dot = svgElement('circle', { cx: x(keyframe.position[a]), cy: y(keyframe.position[b]), r: 2.6, style: 'fill: var(--keyframe)' });
       dot.addEventListener('mousemove', (event) => {

@@ -1,0 +1,10 @@
+# The benchmark's pages, their style and scripts, as strings in the benchmark stage.
+set(pages_folder ${CMAKE_CURRENT_LIST_DIR})
+edgeslam_read_asset(PAGE_COMPARISON ${pages_folder}/comparison.html)
+edgeslam_read_asset(PAGE_COMPARISON_SCRIPT ${pages_folder}/comparison.js)
+edgeslam_read_asset(PAGE_SET ${pages_folder}/set.html)
+edgeslam_read_asset(PAGE_SET_SCRIPT ${pages_folder}/set.js)
+edgeslam_read_asset(PAGE_STYLE ${pages_folder}/pages.css)
+edgeslam_read_asset(PAGE_TABLES ${pages_folder}/tables.js)
+configure_file(${pages_folder}/page_assets.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/page_assets.cpp @ONLY)
+target_sources(edgeslam_benchmark PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/page_assets.cpp)
