@@ -18,6 +18,7 @@
 #include "app/replay_command.h"
 #include "app/run_command.h"
 #include "app/simulate_command.h"
+#include "app/view_command.h"
 #include "edgeslam/input_error.h"
 
 namespace edgeslam {
@@ -44,6 +45,7 @@ int parseAndRun(int argc, const char* const* argv) {
   app.footer("Exit codes: 0 done, 1 the run failed, 2 wrong use or bad input.");
   addRunCommand(app, exit_code);
   addReplayCommand(app, exit_code);
+  addViewCommand(app, exit_code);
   addEvaluateCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
   addListenCommand(app, exit_code);
