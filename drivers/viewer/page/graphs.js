@@ -66,7 +66,7 @@ function drawGraph(canvas, history, lines) {
   const width = canvas.clientWidth;
   const height = canvas.clientHeight;
   if (canvas.width !== Math.round(width * density)) Object.assign(canvas, { width: Math.round(width * density), height: Math.round(height * density) });
-  const pen = canvas.getContext('2d');
+  const pen = canvas.getContext('2d', { willReadFrequently: true });
   pen.setTransform(density, 0, 0, density, 0, 0);
   pen.clearRect(0, 0, width, height);
   const now = history.now();

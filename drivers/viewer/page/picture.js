@@ -28,15 +28,34 @@ function readPicture(description, rest) {
 }
 
 class PictureView {
-  constructor(host, controls) {
+  // `told` is called with the description of each picture that is shown.
+  constructor(host, controls, told) {
     this.host = host;
+    this.told = told;
     this.canvas = host.querySelector('canvas');
     this.controls = controls;
     for (const control of Object.values(controls)) control.addEventListener('input', () => this.draw());
     new ResizeObserver(() => this.draw()).observe(host);
   }
 
+  // Where the browser is slower than the pictures come, the newest one is next.
   async show(description, rest) {
+    this.next = { description, rest };
+    if (this.busy) return;
+    this.busy = true;
+    try {
+      while (this.next) {
+        const { description: newest, rest: its } = this.next;
+        this.next = null;
+        await this.decode(newest, its);
+        await new Promise((resolve) => requestAnimationFrame(() => { this.draw(); resolve(); }));
+      }
+    } finally {
+      this.busy = false;
+    }
+  }
+
+  async decode(description, rest) {
     const picture = readPicture(description, rest);
     const image = await createImageBitmap(picture.jpeg);
     if (this.image) this.image.close();
@@ -44,7 +63,7 @@ class PictureView {
     this.picture = picture;
     this.description = description;
     this.host.querySelector('.empty').hidden = true;
-    this.draw();
+    this.told(description);
   }
 
   draw() {
@@ -53,7 +72,8 @@ class PictureView {
     const width = Math.round(this.host.clientWidth * density);
     const height = Math.round(this.host.clientHeight * density);
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
-    const pen = this.canvas.getContext('2d');
+    // Thousands of short lines are drawn by the processor: quick everywhere, also where the graphics are software's.
+    const pen = this.canvas.getContext('2d', { willReadFrequently: true });
     pen.fillStyle = '#000';
     pen.fillRect(0, 0, width, height);
     const scale = Math.min(width / this.description.width, height / this.description.height);

@@ -13,7 +13,7 @@ const STATE_REASON = {
 };
 
 const frames = new FrameHistory();
-const picture = new PictureView(element('picture'), { edges: element('show-edges'), tracks: element('show-tracks'), trails: element('show-trails') });
+const picture = new PictureView(element('picture'), { edges: element('show-edges'), tracks: element('show-tracks'), trails: element('show-trails') }, tellPicture);
 const map = new MapView(element('map'), { follow: element('map-follow'), uncertain: element('map-uncertain'), reset: element('map-reset') });
 const graphs = Object.fromEntries(['latency', 'tracking', 'rate', 'points'].map((name) => [name, { canvas: element(name + '-graph'), value: element(name + '-value') }]));
 const marks = { from: null, to: null };
@@ -114,10 +114,8 @@ function showHello(message) {
   for (const control of document.querySelectorAll('[data-command]')) control.hidden = !message.commands.includes(control.dataset.command);
 }
 
-function showPicture(description, rest) {
-  return picture.show(description, rest).then(() => {
-    setText(element('picture-caption'), `Frame ${description.index}, ${description.state}: ${number(description.tracks)} points are followed.`);
-  });
+function tellPicture(description) {
+  setText(element('picture-caption'), `Frame ${description.index}, ${description.state}: ${number(description.tracks)} points are followed.`);
 }
 
 function showMap(description, rest) {
@@ -182,4 +180,4 @@ element('scale-form').addEventListener('submit', (event) => {
 });
 
 setInterval(() => drawGraphs(frames, graphs), 250);
-followStream({ hello: showHello, state: showState, map: showMap, picture: showPicture, connection: showConnection });
+followStream({ hello: showHello, state: showState, map: showMap, picture: (description, rest) => picture.show(description, rest), connection: showConnection });
