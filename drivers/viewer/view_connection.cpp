@@ -19,12 +19,11 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using asio::ip::tcp;
 
-constexpr auto request_time = std::chrono::seconds(10);
-constexpr auto response_time = std::chrono::seconds(20);
 constexpr auto message_time =
     std::chrono::seconds(10);  // a client that does not read a message in this time is dropped
 constexpr auto linger_time = std::chrono::seconds(2);
-constexpr std::size_t most_drained = 1 << 20;                      // [bytes]
+constexpr int stream_buffer = 256 << 10;       // of the kernel, so that what waits there is not old [bytes]
+constexpr std::size_t most_drained = 1 << 20;  // [bytes]
 constexpr std::uint32_t largest_head = 8192, largest_body = 4096;  // [bytes]
 
 // A refused person sees where to put the token.
@@ -95,7 +94,7 @@ class Connection : public ViewStream, public std::enable_shared_from_this<Connec
 void Connection::read() {
   parser_.header_limit(largest_head);
   parser_.body_limit(largest_body);
-  stream_.expires_after(request_time);
+  stream_.expires_after(server_.patience().request);
   http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](const beast::error_code& error, std::size_t) {
     self->haveRequest(error);
   });
@@ -103,44 +102,13 @@ void Connection::read() {
 
 void Connection::haveRequest(const beast::error_code& error) {
   if (!error) return serve();
-  if (error == http::error::end_of_stream || error == asio::error::operation_aborted) return;
-  if (error == beast::error::timeout) return refuse({408, "the request did not come in time"}, false);
   if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     return refuse({431, "the request's head is too large"}, false);
   }
   if (error == http::error::body_limit) return refuse({413, "the request's body is too large"}, false);
-  if (error.category() == make_error_code(http::error::bad_method).category())
+  // Otherwise the client went away, or took too long: the connection is closed already.
+  if (error.category() == make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream) {
     return refuse({400, "this is no HTTP request: " + error.message()}, false);
-}
-
-void Connection::serve() {
-  const http::request<http::string_body>& request = parser_.get();
-  const auto text = [](beast::string_view view) { return std::string_view(view.data(), view.size()); };
-  const auto field = [&](http::field name) { return text(request[name]); };
-  RequestHead head;
-  head.method = text(request.method_string());
-  head.target = text(request.target());
-  head.host = field(http::field::host);
-  head.origin = field(http::field::origin);
-  head.authorization = field(http::field::authorization);
-  head.content_type = field(http::field::content_type);
-  head.fetch_site = text(request["Sec-Fetch-Site"]);
-  for (const http::field name :
-       {http::field::host, http::field::origin, http::field::authorization, http::field::content_type}) {
-    head.has_repeated_fields = head.has_repeated_fields || request.count(name) > 1;
-  }
-  const RequestVerdict verdict = checkRequest(head, server_.options());
-  if (verdict.refusal) return refuse(*verdict.refusal, head.target.substr(0, head.target.find('?')) == "/");
-  switch (verdict.route) {
-    case ViewerRoute::page:
-      return respond(200, "text/html; charset=utf-8", server_.page());
-    case ViewerRoute::stream:
-      return beginStream();
-    case ViewerRoute::command:
-      stream_.expires_never();
-      return server_.command(request.body(), [self = shared_from_this()](int status, const std::string& json) {
-        self->respond(status, "application/json", json);
-      });
   }
 }
 
@@ -165,7 +133,7 @@ void Connection::respond(int status, const std::string& type, std::string body) 
   if (status == 401) response_.set(http::field::www_authenticate, "Bearer");
   response_.body() = std::move(body);
   response_.prepare_payload();
-  stream_.expires_after(response_time);
+  stream_.expires_after(server_.patience().response);
   http::async_write(stream_, response_, [self = shared_from_this()](const beast::error_code& error, std::size_t) {
     if (!error) self->linger();
   });
@@ -198,8 +166,10 @@ void Connection::beginStream() {
   head_.set(http::field::cache_control, "no-store");
   head_.set("X-Content-Type-Options", "nosniff");
   head_serializer_.emplace(head_);
+  beast::error_code ignored;
+  stream_.socket().set_option(tcp::socket::send_buffer_size(stream_buffer), ignored);
   watchForEnd();
-  deadline_.expires_after(message_time);
+  deadline_.expires_after(server_.patience().message);
   deadline_.async_wait([self = shared_from_this()](const beast::error_code& error) {
     if (!error) self->end();
   });
@@ -241,7 +211,7 @@ void Connection::sendNext() {
   frame_.clear();
   for (int i = 0; i < 4; ++i) frame_.push_back(static_cast<char>(message->size() >> (8 * i) & 0xFF));
   frame_ += *message;
-  deadline_.expires_after(message_time);
+  deadline_.expires_after(server_.patience().message);
   deadline_.async_wait([self = shared_from_this()](const beast::error_code& error) {
     if (!error) self->end();
   });

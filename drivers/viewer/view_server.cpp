@@ -28,8 +28,14 @@ std::string randomDigits() {
 
 }  // namespace
 
-ViewServer::ViewServer(const ViewerOptions& options, const ViewerSetup& setup, ViewFeed& feed)
-    : options_(options), setup_(setup), feed_(feed), nonce_(randomDigits()), page_(viewerPage(nonce_)) {
+ViewServer::ViewServer(const ViewerOptions& options, const ViewerSetup& setup, const ViewerPatience& patience,
+                       ViewFeed& feed)
+    : options_(options),
+      setup_(setup),
+      patience_(patience),
+      feed_(feed),
+      nonce_(randomDigits()),
+      page_(viewerPage(nonce_)) {
   try {
     const tcp::endpoint endpoint(asio::ip::make_address(options.address), static_cast<unsigned short>(options.port));
     acceptor_.open(endpoint.protocol());

@@ -44,7 +44,7 @@ class ViewServer {
   static constexpr auto longest_wait_for_answer = std::chrono::seconds(10);
 
   // Listens. Throws InputError where it cannot.
-  ViewServer(const ViewerOptions& options, const ViewerSetup& setup, ViewFeed& feed);
+  ViewServer(const ViewerOptions& options, const ViewerSetup& setup, const ViewerPatience& patience, ViewFeed& feed);
   ~ViewServer();
   ViewServer(const ViewServer&) = delete;
   ViewServer& operator=(const ViewServer&) = delete;
@@ -59,6 +59,7 @@ class ViewServer {
   // For connections.
   using TakeAnswer = std::function<void(int status, const std::string& json)>;
   const ViewerOptions& options() const { return options_; }
+  const ViewerPatience& patience() const { return patience_; }
   const std::string& page() const { return page_; }
   const std::string& scriptNonce() const { return nonce_; }
   // `take` is called once, with the answer or with what is in its place.
@@ -86,6 +87,7 @@ class ViewServer {
 
   ViewerOptions options_;
   ViewerSetup setup_;
+  ViewerPatience patience_;
   ViewFeed& feed_;
   int port_ = 0;
   std::string nonce_, page_;

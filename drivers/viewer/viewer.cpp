@@ -23,8 +23,8 @@ std::string addressOf(const ViewerOptions& options, int port) {
 bool viewerIsBuiltIn() { return true; }
 
 struct Viewer::Work {
-  Work(const ViewerOptions& options, const ViewerSetup& setup)
-      : server(options, setup, feed), address(addressOf(options, server.port())) {
+  Work(const ViewerOptions& options, const ViewerSetup& setup, const ViewerPatience& patience)
+      : server(options, setup, patience, feed), address(addressOf(options, server.port())) {
     // The program's signals are for those who wait for them.
     sigset_t all{}, before{};
     sigfillset(&all);
@@ -52,8 +52,8 @@ struct Viewer::Work {
   std::thread thread;
 };
 
-Viewer::Viewer(const ViewerOptions& options, const ViewerSetup& setup)
-    : work_(std::make_unique<Work>(options, setup)) {}
+Viewer::Viewer(const ViewerOptions& options, const ViewerSetup& setup, const ViewerPatience& patience)
+    : work_(std::make_unique<Work>(options, setup, patience)) {}
 Viewer::~Viewer() = default;
 
 const std::string& Viewer::address() const { return work_->address; }

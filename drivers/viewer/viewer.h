@@ -21,7 +21,7 @@ bool viewerIsBuiltIn();
 class Viewer {
  public:
   // Serves from here on. Throws InputError where it cannot, and where it was left out.
-  Viewer(const ViewerOptions& options, const ViewerSetup& setup);
+  Viewer(const ViewerOptions& options, const ViewerSetup& setup, const ViewerPatience& patience = {});
   ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;

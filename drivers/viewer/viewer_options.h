@@ -1,6 +1,7 @@
 // Where the page for people is served, checked before anything is opened.
 #pragma once
 
+#include <chrono>
 #include <string>
 
 namespace edgeslam {
@@ -10,6 +11,13 @@ struct ViewerOptions {
   std::string address = "127.0.0.1";  // of this computer, IPv4 or IPv6, as a number
   int port = 8417;                    // TCP; 0: a free one
   std::string token;                  // empty: none is asked for
+};
+
+// How long a client may take; one that takes longer is dropped.
+struct ViewerPatience {
+  std::chrono::milliseconds request{10000};  // for all of a request
+  std::chrono::milliseconds response{20000};
+  std::chrono::milliseconds message{10000};  // to take in one message of the stream
 };
 
 // 127.0.0.0/8 and ::1. False for what is no address.

@@ -11,7 +11,7 @@ struct Viewer::Work {
   FrameLooks looks;
 };
 
-Viewer::Viewer(const ViewerOptions& /*options*/, const ViewerSetup& /*setup*/) {
+Viewer::Viewer(const ViewerOptions& /*options*/, const ViewerSetup& /*setup*/, const ViewerPatience& /*patience*/) {
   throw InputError(
       "this program was built without the viewer (build it with EDGESLAM_VIEWER=ON and EDGESLAM_REPORTS=ON)");
 }

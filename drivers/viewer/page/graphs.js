@@ -70,7 +70,7 @@ function drawGraph(canvas, history, lines) {
   pen.setTransform(density, 0, 0, density, 0, 0);
   pen.clearRect(0, 0, width, height);
   const now = history.now();
-  const left = 30;
+  const left = 36;
   const top = 8;
   const bottom = height - BAND_HEIGHT - 3;
   const largest = roundUp(1.02 * Math.max(1, ...lines.flatMap((line) => line.values.map((pair) => pair[1]).filter(Number.isFinite))));

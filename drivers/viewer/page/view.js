@@ -40,7 +40,7 @@ function showFigures(state) {
   const status = state.status;
   const figures = {
     'Keyframes': number(status.keyframes), 'Map points': number(status.points),
-    'Scale, a map unit is': scaleText(state.scale), 'Found again': number(status.recoveries + status.relocalisations), 'Loops closed': number(status.loops),
+    'Map unit': scaleText(state.scale), 'Found again': number(status.recoveries + status.relocalisations), 'Loops closed': number(status.loops),
     'Frames dropped': number(status.dropped), 'Running for': duration(status.uptime_ms),
   };
   const list = element('figures');
