@@ -112,6 +112,37 @@ void Connection::haveRequest(const beast::error_code& error) {
   }
 }
 
+void Connection::serve() {
+  const http::request<http::string_body>& request = parser_.get();
+  const auto text = [](beast::string_view view) { return std::string_view(view.data(), view.size()); };
+  const auto field = [&](http::field name) { return text(request[name]); };
+  RequestHead head;
+  head.method = text(request.method_string());
+  head.target = text(request.target());
+  head.host = field(http::field::host);
+  head.origin = field(http::field::origin);
+  head.authorization = field(http::field::authorization);
+  head.content_type = field(http::field::content_type);
+  head.fetch_site = text(request["Sec-Fetch-Site"]);
+  for (const http::field name :
+       {http::field::host, http::field::origin, http::field::authorization, http::field::content_type}) {
+    head.has_repeated_fields = head.has_repeated_fields || request.count(name) > 1;
+  }
+  const RequestVerdict verdict = checkRequest(head, server_.options());
+  if (verdict.refusal) return refuse(*verdict.refusal, head.target.substr(0, head.target.find('?')) == "/");
+  switch (verdict.route) {
+    case ViewerRoute::page:
+      return respond(200, "text/html; charset=utf-8", server_.page());
+    case ViewerRoute::stream:
+      return beginStream();
+    case ViewerRoute::command:
+      stream_.expires_never();
+      return server_.command(request.body(), [self = shared_from_this()](int status, const std::string& json) {
+        self->respond(status, "application/json", json);
+      });
+  }
+}
+
 void Connection::refuse(const Refusal& refusal, bool is_page) {
   if (is_page) return respond(refusal.status, "text/html; charset=utf-8", refusalPage(refusal));
   respond(refusal.status, "application/json", commandAnswerText(false, refusal.message));
