@@ -89,8 +89,7 @@ std::vector<ServiceKey> keysOf(Configuration& configuration) {
       number("viewer.port", &viewer.port, "", 1, 65535, "TCP"),
       TextKey{
           "viewer.token", &viewer.token,
-          "who looks on must know it, 16 to 128 letters and digits (openssl rand -hex 16); needed unless the address "
-          "is this computer's own; keep this file from others then",
+          "who looks on must know it, 16 to 128 letters and digits (openssl rand -hex 16); needed for other addresses",
           "0123456789abcdef0123456789abcdef"},
   };
 }
