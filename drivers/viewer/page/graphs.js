@@ -113,7 +113,7 @@ function drawBand(pen, history, x, left, height) {
     const from = Math.max(left, x(frames[i].time));
     if (x(end) <= left) continue;
     pen.fillStyle = colours[state];
-    pen.fillRect(from, height - BAND_HEIGHT, Math.max(0.5, x(end) - from), BAND_HEIGHT);
+    pen.fillRect(Math.floor(from), height - BAND_HEIGHT, Math.ceil(x(end) - from), BAND_HEIGHT); // no seams between frames
   }
 }
 

@@ -95,15 +95,18 @@ class MapView {
     if (!this.touched) this.fit(); else this.render();
   }
 
-  // Middle and size of what is known well.
+  // Middle and size of what is known well, with every keyframe in it.
   measure() {
     const { count, positions, sigmas, keyframes } = this.map;
-    const axes = [[], [], []];
-    for (let i = 0; i < count; ++i) if (sigmas[i] <= MOST_CERTAIN) axes.forEach((axis, k) => axis.push(positions[3 * i + k]));
-    for (let i = 0; i < keyframes.length; i += 7) axes.forEach((axis, k) => axis.push(keyframes[i + k]));
-    this.centre = new THREE.Vector3(...axes.map((axis) => (quantile(axis, 0.06) + quantile(axis, 0.94)) / 2));
-    const spans = axes.map((axis) => (quantile(axis, 0.94) - quantile(axis, 0.06)) / 2);
-    this.radius = Math.max(1e-3, Math.hypot(...spans));
+    const extents = [0, 1, 2].map((axis) => {
+      const known = [];
+      for (let i = 0; i < count; ++i) if (sigmas[i] <= MOST_CERTAIN) known.push(positions[3 * i + axis]);
+      let [low, high] = known.length ? [quantile(known, 0.05), quantile(known, 0.95)] : [Infinity, -Infinity];
+      for (let i = axis; i < keyframes.length; i += 7) [low, high] = [Math.min(low, keyframes[i]), Math.max(high, keyframes[i])];
+      return low <= high ? [low, high] : [0, 0];
+    });
+    this.centre = new THREE.Vector3(...extents.map(([low, high]) => (low + high) / 2));
+    this.radius = Math.max(1e-3, Math.hypot(...extents.map(([low, high]) => (high - low) / 2)));
   }
 
   fill() {
@@ -182,7 +185,7 @@ class MapView {
   fit() {
     if (!this.renderer || !this.radius) return;
     const back = new THREE.Vector3(-0.45, -0.75, -1).normalize();
-    const distance = 1.15 * this.radius / Math.sin(25 * Math.PI / 180) * Math.max(1, 1.2 / this.camera.aspect);
+    const distance = 0.95 * this.radius / Math.sin(25 * Math.PI / 180) * Math.max(1, 1.2 / this.camera.aspect);
     this.camera.near = 1e-3 * this.radius;
     this.camera.far = 100 * this.radius;
     this.camera.updateProjectionMatrix();
