@@ -42,7 +42,7 @@ def has_picture(opened):
     return opened.run("""
         const canvas = document.querySelector('#picture canvas');
         if (!picture.image) return false;
-        const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+        const pixels = canvas.getContext('2d', {willReadFrequently: true}).getImageData(0, 0, canvas.width, canvas.height).data;
         let green = 0;
         const greys = new Set();
         for (let i = 0; i < pixels.length; i += 4) {
