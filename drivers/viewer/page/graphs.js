@@ -129,7 +129,7 @@ function drawGraphs(history, elements) {
   const rates = history.rates();
   drawGraph(elements.rate.canvas, history, [{ colour: '--second', values: rates.map((r) => [r.time, r.frames]) }, { colour: '--first', values: rates.map((r) => [r.time, r.poses]) }]);
   const rate = rates[rates.length - 1];
-  elements.rate.value.textContent = rate ? `${rate.frames} / s, ${rate.poses} / s` : '–';
+  elements.rate.value.textContent = rate ? `${rate.frames}, ${rate.poses} / s` : '–';
   const counted = frames.filter((f) => f.tracked !== undefined);
   drawGraph(elements.points.canvas, history, [{ colour: '--second', values: counted.map((f) => [f.time, f.tracked]) }, { colour: '--first', values: counted.map((f) => [f.time, f.mapped]) }]);
   const last = counted[counted.length - 1];
