@@ -64,11 +64,15 @@ CheckedCommand checkCommand(const void* data, std::size_t bytes, std::int64_t ut
   command_t message;
   const int expected = message.getEncodedSize();
   if (bytes != static_cast<std::size_t>(expected) || message.decode(data, 0, expected) != expected) return {};
+  return checkCommand(message, utime);
+}
+
+CheckedCommand checkCommand(const command_t& message, std::int64_t utime) {
   CheckedCommand checked;
   const std::string problem = problemOf(message);
   if (problem.empty()) {
-    checked.command =
-        Command{message.id, *kindOf(message.command), message.from_utime, message.to_utime, message.distance_m};
+    checked.command = Command{message.id,       *kindOf(message.command), message.from_utime,
+                              message.to_utime, message.distance_m,       CommandSender::robot};
   } else {
     checked.refusal.emplace();
     checked.refusal->utime = utime;

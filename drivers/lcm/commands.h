@@ -12,6 +12,8 @@ namespace edgeslam {
 
 enum class CommandKind { reset, save_map, start_recording, stop_recording, set_scale, send_map };
 
+enum class CommandSender { robot, viewer };
+
 struct Command {
   std::int64_t id = 0;  // the sender's
   CommandKind kind = CommandKind::reset;
@@ -19,12 +21,15 @@ struct Command {
   std::int64_t from_utime = 0;
   std::int64_t to_utime = 0;
   double distance_m = 0;
+  CommandSender sender = CommandSender::robot;  // who gets the answer
 };
 
 struct CheckedCommand {
   std::optional<Command> command;           // where it can be done
   std::optional<command_answer_t> refusal;  // of a command_t that makes no sense: why
 };
+
+CheckedCommand checkCommand(const command_t& message, std::int64_t utime);
 
 // Neither of the two: the bytes are no command_t (of another type, too short, too long).
 CheckedCommand checkCommand(const void* data, std::size_t bytes, std::int64_t utime);

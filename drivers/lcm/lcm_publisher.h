@@ -25,6 +25,7 @@ class LcmPublisher {
 
   // From the next frame on.
   void setScale(const ScaleState& scale) { robot_.scale = scale; }
+  const ScaleState& scale() const { return robot_.scale; }
 
   // Each frame, in order: SLAM_STATE and SLAM_REL_ODOMETRY, and SLAM_POSE where the pose was measured; some of a
   // waiting map's parts, too.

@@ -21,6 +21,7 @@
 #include "app/report_command.h"
 #include "app/run_command.h"
 #include "app/simulate_command.h"
+#include "app/view_command.h"
 #include "edgeslam/input_error.h"
 
 namespace edgeslam {
@@ -47,6 +48,7 @@ int parseAndRun(int argc, const char* const* argv) {
   app.footer("Exit codes: 0 done, 1 the run failed, 2 wrong use or bad input.");
   addRunCommand(app, exit_code);
   addReplayCommand(app, exit_code);
+  addViewCommand(app, exit_code);
   addEvaluateCommand(app, exit_code);
   addReportCommand(app, exit_code);
   addBenchmarkCommand(app, exit_code);

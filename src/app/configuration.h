@@ -8,6 +8,7 @@
 #include "app/scale_options.h"
 #include "drivers/frame_capture/camera_options.h"
 #include "drivers/lcm/lcm_options.h"
+#include "drivers/viewer/viewer_options.h"
 #include "edgeslam/input_error.h"
 #include "geometry/camera.h"
 #include "geometry/pose.h"
@@ -24,6 +25,7 @@ struct ServiceOptions {
   std::string recordings_folder;  // for a folder a recording; empty: no command begins one
   bool records_from_start = false;
   ScaleOptions scale;
+  ViewerOptions viewer;
 };
 
 struct Configuration {
@@ -46,7 +48,8 @@ Configuration readConfiguration(const std::string& path, std::vector<std::string
 // True where the file is a camera's calibration rather than a configuration; false also where it cannot be read.
 bool isCalibrationFile(const std::string& path);
 
-// The effective configuration as YAML: reads back as the same one.
+// The effective configuration as YAML: reads back as the same one, but for the section `viewer:`, whose token is nobody
+// else's business.
 std::string formatConfiguration(const Configuration& configuration);
 
 // Every key with documentation, unit, range and default: the text of firmware_cfg/edgeslam.yaml.

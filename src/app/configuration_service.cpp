@@ -24,6 +24,7 @@ std::vector<ServiceKey> keysOf(Configuration& configuration) {
   RecordingSpace& space = configuration.settings.recording;
   LcmOptions& lcm = options.lcm;
   ScaleOptions& scale = options.scale;
+  ViewerOptions& viewer = options.viewer;
   const auto number = [](const std::string& path, ConfigurationField field, const std::string& unit, double least,
                          double largest, const std::string& documentation) {
     return ConfigurationKey{path, field, unit, least, largest, documentation};
@@ -79,6 +80,17 @@ std::vector<ServiceKey> keysOf(Configuration& configuration) {
       number("scale.metres_per_unit", &scale.metres_per_unit, "m", 0, 1e6,
              "of the saved map that is gone on with; 0: not known"),
       number("scale.sigma", &scale.sigma, "", 0, 1, "standard deviation of that, as a share of it"),
+
+      number("viewer.enabled", &viewer.enabled, "", 0, 0, "`edgeslam run` serves a page that shows the run"),
+      TextKey{"viewer.address", &viewer.address,
+              "of this computer, where it is served: 127.0.0.1 to this computer alone (ssh -L brings it to others), "
+              "0.0.0.0 to all",
+              ""},
+      number("viewer.port", &viewer.port, "", 1, 65535, "TCP"),
+      TextKey{
+          "viewer.token", &viewer.token,
+          "who looks on must know it, 16 to 128 letters and digits (openssl rand -hex 16); needed for other addresses",
+          "0123456789abcdef0123456789abcdef"},
   };
 }
 
@@ -147,13 +159,14 @@ const char* introduction(const std::string& section) {
   if (section == "lcm") return "Messages to the robot's controller";
   if (section == "map") return "The map on the disk, of `edgeslam run`";
   if (section == "recording") return "The flight recorder of live runs";
+  if (section == "viewer") return "A page in the browser for people who look on";
   return "Metres a map unit: by command from a known distance, or found by itself";
 }
 
 }  // namespace
 
 const std::vector<std::string>& serviceSections() {
-  static const std::vector<std::string> sections{"lcm", "map", "recording", "scale"};
+  static const std::vector<std::string> sections{"lcm", "map", "recording", "scale", "viewer"};
   return sections;
 }
 
@@ -180,6 +193,11 @@ void readServiceSection(const std::string& section, const YAML::Node& node, Conf
   if (section == "scale") {
     if (const std::string wrong = scaleProblem(configuration.service); !wrong.empty()) tell(node.Mark().line, wrong);
   }
+  if (section == "viewer") {
+    if (const std::string wrong = viewerProblem(configuration.service.viewer); !wrong.empty()) {
+      tell(node.Mark().line, wrong);
+    }
+  }
 }
 
 std::string formatServiceSections(const Configuration& configuration) {
@@ -188,6 +206,7 @@ std::string formatServiceSections(const Configuration& configuration) {
   std::string text, section;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::string& path = pathOf(keys[i]);
+    if (sectionOf(path) == "viewer") continue;
     if (valueOf(keys[i]) == valueOf(usual_keys[i])) continue;
     if (sectionOf(path) != section) text += sectionOf(path) + ":\n";
     section = sectionOf(path);

@@ -1,4 +1,5 @@
-// The configuration's sections `lcm:`, `map:`, `recording:` and `scale:`: what `edgeslam run` gives out and keeps.
+// The configuration's sections `lcm:`, `map:`, `recording:`, `scale:` and `viewer:`: what `edgeslam run` gives out and
+// keeps.
 #pragma once
 
 #include <string>
@@ -18,7 +19,8 @@ std::vector<std::string> serviceKeys();
 void readServiceSection(const std::string& section, const YAML::Node& node, Configuration& configuration,
                         const TellProblem& tell);
 
-// The sections as YAML, only what differs from the defaults; empty where nothing does.
+// The sections as YAML, only what differs from the defaults; empty where nothing does. Without `viewer:`: recordings
+// and results keep this text, and its token is nobody else's business.
 std::string formatServiceSections(const Configuration& configuration);
 
 // The sections' documentation with their defaults.

@@ -14,8 +14,9 @@ namespace {
 
 constexpr auto longest_wait = std::chrono::milliseconds(100);  // for a frame, before signals and commands are seen to
 
-PublishingSetup publishingOf(const DaemonSetup& setup) {
+PublishingSetup publishingOf(const DaemonSetup& setup, Viewer* viewer) {
   PublishingSetup publishing = publishingSetup(setup.configuration, setup.camera);
+  publishing.viewer = viewer;
   publishing.map_file = setup.map_out;
   publishing.begins_anew = true;
   return publishing;
@@ -30,7 +31,8 @@ Daemon::Daemon(DaemonSetup setup, EventLog& log) : setup_(std::move(setup)), log
   link_.setCameraProblem(problem);
   const StreamDescription& stream = camera_->stream();
   log_.tell(problem.empty() ? "camera: " + stream.camera + ", " + stream.format : "waiting for the camera: " + problem);
-  publisher_ = std::make_unique<RunPublisher>(publishingOf(setup_), link_, log_);
+  if (setup_.configuration.service.viewer.enabled) openViewer();
+  publisher_ = std::make_unique<RunPublisher>(publishingOf(setup_, viewer_.get()), link_, log_);
   map_ = std::move(setup_.map_in);
   if (map_) start_ = RunStart::saved_map;
   if (!setup_.record_folder.empty()) {
@@ -65,8 +67,12 @@ void Daemon::tellProcessorProblems(const LiveRun& run) {
 
 void Daemon::run() {
   publisher_->service().ready();
-  log_.tell(std::string("version ") + EDGESLAM_VERSION + " runs, poses go to " +
-            effectiveUrl(setup_.configuration.service.lcm));
+  if (setup_.for_viewing) {
+    waitForViewer();
+  } else {
+    log_.tell(std::string("version ") + EDGESLAM_VERSION + " runs, poses go to " +
+              effectiveUrl(setup_.configuration.service.lcm));
+  }
   while (!ended_) oneRun();
 }
 
@@ -88,6 +94,7 @@ void Daemon::oneRun() {
   recorder_.reset();
   if (end.command) return beginNext(*end.command, run);
   ended_ = true;
+  if (setup_.for_viewing && !signals_.end()) showUntilSignal(run.mapper().initialised() ? run.mapper().map() : Map());
   if (!setup_.map_out.empty()) writeMap(run.mapper().initialised() ? run.mapper().map() : Map());
   const PublisherStatus totals = publisher_->status();
   log_.tell("ended after " + std::to_string(totals.frames_captured) + " frames, " +

@@ -12,6 +12,7 @@
 #include "app/event_log.h"
 #include "app/run_publisher.h"
 #include "drivers/frame_capture/reopening_camera.h"
+#include "drivers/viewer/viewer.h"
 
 namespace edgeslam {
 
@@ -22,6 +23,7 @@ struct DaemonSetup {
   std::string record_folder;  // of a recording from the start; empty: none
   std::optional<Map> map_in;  // gone on with
   std::string map_out;        // empty: not written
+  bool for_viewing = false;   // begins when someone looks on, and goes on after the end until a signal
 };
 
 class Daemon {
@@ -55,11 +57,17 @@ class Daemon {
   void saveMapAtStart(const Map& map, const std::string& folder);
   void writeMap(const Map& map);
 
+  // daemon_viewing.cpp.
+  void openViewer();
+  void waitForViewer();
+  void showUntilSignal(const Map& map);
+
   DaemonSignals signals_;  // first: threads inherit what is blocked
   DaemonSetup setup_;
   EventLog& log_;
   CaptureLink link_;
   std::unique_ptr<ReopeningCamera> camera_;
+  std::unique_ptr<Viewer> viewer_;  // null where nobody can look on
   std::unique_ptr<RunPublisher> publisher_;
   std::shared_ptr<FlightRecorder> recorder_;
   std::shared_ptr<FlightRecorder> next_recorder_;  // of the run to come

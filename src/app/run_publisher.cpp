@@ -45,6 +45,8 @@ void RunPublisher::begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder,
   recorder_ = std::move(recorder);
   told_recording_ = isRecording();
   published_changes_ = 0;
+  shown_changes_ = -1;
+  if (setup_.viewer) run.showTo(setup_.viewer->looks());
   if (start == RunStart::same_map) return;
   forgetScale();
   if (start == RunStart::saved_map && setup_.scale.metres_per_unit > 0) {
@@ -60,6 +62,7 @@ void RunPublisher::end() {
   if (recorder_) recorder_->stop();
   const PublisherStatus last = status();
   publisher_.status(last);
+  showStatus(last);
   tellChanges(last);
   map_wanted_ = ground_wanted_ = false;
   earlier_runs_ = countsOverRuns();
@@ -78,6 +81,7 @@ void RunPublisher::frame(const FrameResult& result, const std::string& problem) 
   const bool is_initialising = result.state == TrackingState::initialising;
   if (is_initialising && (state_ != TrackingState::initialising || scale_ != ScaleKind::unknown)) forgetScale();
   publisher_.frame(result);
+  if (setup_.viewer) setup_.viewer->frame(result);
   service_.alive(Clock::now());
   history_.add(result);
   takeOdometry();
@@ -104,11 +108,14 @@ void RunPublisher::report(const MappingReport& report) {
 void RunPublisher::tick() {
   const Clock::time_point now = Clock::now();
   work_.complete();
-  for (const CaptureLink::Answer& answer : link_.takeAnswers()) {
-    publisher_.answer(answer.command, answer.accepted, answer.message);
+  for (const CaptureLink::Answer& given : link_.takeAnswers()) {
+    answer(given.command, given.accepted, given.message);
   }
   if (link_.takeMapWish()) askToSaveMap({});
   while (const std::optional<Command> command = publisher_.nextCommand()) carryOut(*command);
+  while (const std::optional<Command> command = setup_.viewer ? setup_.viewer->nextCommand() : std::nullopt) {
+    carryOut(*command);
+  }
   if (const std::int64_t waits = link_.waits(); waits != waits_) {
     waits_ = waits;
     service_.alive(now);
@@ -122,9 +129,15 @@ void RunPublisher::eachSecond(Clock::time_point now) {
   followScale(now);
   const PublisherStatus current = status();
   publisher_.status(current);
+  showStatus(current);
   service_.status(serviceText(current, state_));
   tellChanges(current);
   publishChangedMap(now);
+  showChangedMap(now);
+}
+
+void RunPublisher::showStatus(const PublisherStatus& status) {
+  if (setup_.viewer) setup_.viewer->status(status, publisher_.scale(), publisher_.problem());
 }
 
 PublisherStatus RunPublisher::status() const {

@@ -1,4 +1,5 @@
-// What a live run gives out, as LCM messages: each frame, the status each second, the map; and the robot's commands.
+// What a live run gives out, as LCM messages and to the viewer: each frame, the status each second, the map; and the
+// commands of the robot and of the person who looks on.
 // The daemon and a replay at real time publish by the same one.
 #pragma once
 
@@ -17,6 +18,7 @@
 #include "app/scale_search.h"
 #include "app/service_notification.h"
 #include "drivers/lcm/lcm_publisher.h"
+#include "drivers/viewer/viewer.h"
 #include "pipeline/live_run.h"
 
 namespace edgeslam {
@@ -28,6 +30,7 @@ struct PublishingSetup {
   Camera camera;
   ScaleOptions scale;
   std::string map_file;      // empty: no command saves the map
+  Viewer* viewer = nullptr;  // null: nobody can look on; must outlive the publisher
   bool begins_anew = false;  // capture carries out commands that begin another run: reset, start of a recording
 };
 
@@ -69,6 +72,7 @@ class RunPublisher {
 
   // run_publisher.cpp: frames and status.
   void eachSecond(Clock::time_point now);
+  void showStatus(const PublisherStatus& status);
   void tellChanges(const PublisherStatus& status);
   LiveCounts countsOverRuns() const;
   bool isRecording() const;
@@ -78,7 +82,9 @@ class RunPublisher {
   void askToSaveMap(const MapSaveWish& wish);
   void stopRecording(const Command& command);
   void passToCapture(const Command& command);
+  void answer(const Command& command, bool accepted, const std::string& message);
   void publishChangedMap(Clock::time_point now);
+  void showChangedMap(Clock::time_point now);
   void mapCame(const MapPointer& map);
   void saveMapInBackground(const MapPointer& map);
   void answerSaves(const std::vector<MapSaveWish>& wishes, bool saved, const std::string& message);
@@ -126,6 +132,8 @@ class RunPublisher {
   std::vector<MapSaveWish> save_wishes_;
   Clock::time_point next_map_{};
   std::int64_t published_changes_ = 0, map_version_ = 0;
+  Clock::time_point next_shown_map_{};
+  std::int64_t shown_changes_ = -1;  // of the map that the viewer has; -1: it has none
 };
 
 }  // namespace edgeslam

@@ -8,6 +8,8 @@
 namespace edgeslam {
 namespace {
 
+constexpr auto shown_map_interval = std::chrono::seconds(2);
+
 std::vector<PublishedPoint> publishedPoints(const Map& map, const Camera& camera) {
   std::vector<PublishedPoint> points;
   for (const MapPointRecord& record : mapPointRecords(map, camera)) {
@@ -37,7 +39,7 @@ void RunPublisher::carryOut(const Command& command) {
       return askToSaveMap({command});
     case CommandKind::start_recording:
       if (!isRecording()) return passToCapture(command);
-      return publisher_.answer(command, false, recorder_->status().message + " already");
+      return answer(command, false, recorder_->status().message + " already");
     case CommandKind::stop_recording:
       return stopRecording(command);
     case CommandKind::set_scale:
@@ -45,26 +47,31 @@ void RunPublisher::carryOut(const Command& command) {
     case CommandKind::send_map:
       map_wanted_ = true;
       run_->askForMap();
-      return publisher_.answer(command, true, "the map follows");
+      return answer(command, true, "the map follows");
   }
+}
+
+void RunPublisher::answer(const Command& command, bool accepted, const std::string& message) {
+  if (command.sender == CommandSender::robot) return publisher_.answer(command, accepted, message);
+  if (setup_.viewer) setup_.viewer->answer(command, accepted, message);
 }
 
 void RunPublisher::passToCapture(const Command& command) {
   if (!setup_.begins_anew) {
-    publisher_.answer(command, false, "a replay does not begin anew");
+    answer(command, false, "a replay does not begin anew");
   } else if (!link_.request(command)) {
-    publisher_.answer(command, false, "another command is still being carried out; send it again");
+    answer(command, false, "another command is still being carried out; send it again");
   }
 }
 
 void RunPublisher::stopRecording(const Command& command) {
-  if (!isRecording()) return publisher_.answer(command, false, "there is no recording");
+  if (!isRecording()) return answer(command, false, "there is no recording");
   told_recording_ = false;  // it is told here
   work_.begin([this, command, recorder = recorder_]() -> BackgroundWork::Completion {
     const std::string message = recorder->stop().message;
     return [this, command, message] {
       log_.tell(message);
-      publisher_.answer(command, true, message);
+      answer(command, true, message);
     };
   });
 }
@@ -88,7 +95,21 @@ void RunPublisher::publishChangedMap(Clock::time_point now) {
   run_->askForMap();
 }
 
+// While someone looks on.
+void RunPublisher::showChangedMap(Clock::time_point now) {
+  if (!setup_.viewer || !setup_.viewer->isWatched()) {
+    shown_changes_ = -1;
+    return;
+  }
+  const std::int64_t changes = run_->counts().map_changes;
+  if (changes == shown_changes_ || now < next_shown_map_) return;
+  next_shown_map_ = now + shown_map_interval;
+  shown_changes_ = changes;
+  run_->askForMap();
+}
+
 void RunPublisher::mapCame(const MapPointer& map) {
+  if (setup_.viewer) setup_.viewer->map(map);
   if (std::exchange(map_wanted_, false)) {
     work_.begin([this, map, version = ++map_version_]() -> BackgroundWork::Completion {
       return [this, version, points = publishedPoints(*map, setup_.camera)]() mutable {
@@ -113,7 +134,7 @@ void RunPublisher::saveMapInBackground(const MapPointer& map) {
 void RunPublisher::answerSaves(const std::vector<MapSaveWish>& wishes, bool saved, const std::string& message) {
   if (!wishes.empty()) log_.tell(message);
   for (const MapSaveWish& wish : wishes) {
-    if (wish.command) publisher_.answer(*wish.command, saved, message);
+    if (wish.command) answer(*wish.command, saved, message);
   }
 }
 

@@ -47,11 +47,11 @@ void RunPublisher::mapWasCorrected() {
 void RunPublisher::setScale(const Command& command) {
   const ScaleResult result =
       scaleFromDistance(history_, command.from_utime, command.to_utime, command.distance_m, setup_.scale);
-  if (!result.problem.empty()) return publisher_.answer(command, false, result.problem);
+  if (!result.problem.empty()) return answer(command, false, result.problem);
   scale_ = result.scale.kind;
   publisher_.setScale(result.scale);
   log_.tell(scaleText(result.scale));
-  publisher_.answer(command, true, scaleText(result.scale));
+  answer(command, true, scaleText(result.scale));
 }
 
 void RunPublisher::takeOdometry() {

@@ -15,6 +15,7 @@
 #include "pipeline/channel.h"
 #include "pipeline/decision_sink.h"
 #include "pipeline/duration_statistics.h"
+#include "pipeline/frame_look.h"
 #include "pipeline/frame_slots.h"
 #include "pipeline/mapping_worker.h"
 #include "pipeline/places_worker.h"
@@ -67,6 +68,8 @@ class LiveRun {
 
   // Before the start: goes on with a map made earlier.
   void goOnWith(Map map);
+  // Before the start: frames that are asked for are shown there. `looks` must outlive the run.
+  void showTo(FrameLooks& looks) { looks_ = &looks; }
   void start();
 
   // The capture thread's: fill the slot, then hand it over. Never waits.
@@ -125,6 +128,7 @@ class LiveRun {
   LiveOptions options_;
   LiveObserver observer_;
   DecisionSink* sink_;
+  FrameLooks* looks_ = nullptr;
   TrackingWorker tracking_;
   MappingWorker mapping_;
   PlacesWorker places_;

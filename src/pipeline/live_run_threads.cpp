@@ -74,6 +74,7 @@ void LiveRun::trackFrame(FrameSlot& slot) {
   }
   if (sink_ && slot.problem.empty()) sink_->processed(tracking_.images());
   if (sink_ && !slot.problem.empty()) sink_->unreadable(slot.index, slot.time_ns, slot.problem);
+  if (looks_ && slot.problem.empty()) looks_->show(result, tracking_.tracker());
   processed_.fetch_add(1, std::memory_order_relaxed);
 }
 

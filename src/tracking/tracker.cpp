@@ -114,6 +114,13 @@ void Tracker::prepare(std::int64_t frame_index, std::int64_t time_ns, const cv::
   frame_.images = latest_images_ = std::move(images);
 }
 
+const EdgeMap* Tracker::latestEdges() const {
+  for (const TrackedState* state : {&last_, &lost_, &kept_, &frame_}) {
+    if (state->images && state->images == latest_images_) return state->edges.get();
+  }
+  return nullptr;
+}
+
 // For so long that the last tracked frame's points are not looked for any more.
 bool Tracker::isLost(std::int64_t time_ns) const {
   return !last_.images ||

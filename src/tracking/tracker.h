@@ -111,6 +111,10 @@ class Tracker {
 
   // Of the last frame, tracked or not. Valid after the first.
   const std::shared_ptr<const FrameImages>& latestImages() const { return latest_images_; }
+  // Its edges; null before the first.
+  const EdgeMap* latestEdges() const;
+  // False where its pose was not found: tracks() are of an earlier one then.
+  bool latestIsTracked() const { return last_.images && last_.images == latest_images_; }
 
   // The last tracked frame, for drawings.
   const std::vector<Track>& tracks() const { return last_.tracks; }

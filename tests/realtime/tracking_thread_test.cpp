@@ -2,10 +2,12 @@
 // 4): the tracking thread of a live run is watched over whole sequences, with losses and what follows.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "dataset/frame_source.h"
@@ -19,6 +21,39 @@ namespace {
 struct WatchedRun {
   Trespasses trespasses;
   int good = 0, lost = 0, found_again = 0;
+  int looks = 0, looks_at_lost_frames = 0;  // taken by someone who looks on
+};
+
+// Stands for the viewer: takes as many looks as it can.
+class Onlooker {
+ public:
+  explicit Onlooker(WatchedRun& result) : result_(result), thread_([this] { look(); }) {}
+  ~Onlooker() {
+    ended_ = true;
+    thread_.join();
+  }
+  Onlooker(const Onlooker&) = delete;
+  Onlooker& operator=(const Onlooker&) = delete;
+  FrameLooks& looks() { return looks_; }
+
+ private:
+  void look() {
+    while (!ended_) {
+      looks_.ask();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      if (!looks_.take()) continue;
+      const FrameLook& look = looks_.look();
+      ++result_.looks;
+      EXPECT_NE(look.images, nullptr);
+      result_.looks_at_lost_frames += look.state == TrackingState::lost && look.tracks.empty();
+      looks_.letGo();
+    }
+  }
+
+  WatchedRun& result_;
+  FrameLooks looks_;
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
 };
 
 // Stands for the flight recorder.
@@ -52,8 +87,10 @@ void feed(LiveRun& run, std::int64_t index, std::int64_t time_ns, const cv::Mat&
 }
 
 template <typename FeedAll>
-WatchedRun watch(const Camera& camera, const FeedAll& feedAll) {
+WatchedRun watch(const Camera& camera, const FeedAll& feedAll, bool is_looked_at = false) {
   WatchedRun result;
+  std::optional<Onlooker> onlooker;
+  if (is_looked_at) onlooker.emplace(result);
   LiveObserver observer;
   observer.frame = [&](const FrameResult& frame, const std::string&) {
     result.good += isGoodPose(frame.state);
@@ -64,6 +101,7 @@ WatchedRun watch(const Camera& camera, const FeedAll& feedAll) {
   LiveOptions options;
   watchThreadNamed(options.tracking.name);
   LiveRun run(camera, Settings(), options, observer, &recorder);
+  if (onlooker) run.showTo(onlooker->looks());
   run.start();
   feedAll(run);
   result.trespasses = takeTrespasses();
@@ -99,8 +137,8 @@ TEST(TrackingThread, TheWatchSeesWhatIsForbidden) {
   EXPECT_NE(seen.where, "");
 }
 
-TEST(TrackingThread, NeitherAllocatesNorLocksNorCallsTheSystem) {
-  if (!canWatchThreads()) GTEST_SKIP() << "not under sanitizers";
+// With a covered lens and a shake in it.
+SimulatedSequence troubledSequence() {
   SimulationOptions simulation;
   simulation.scene = SceneKind::room;
   simulation.frames = 200;
@@ -109,15 +147,33 @@ TEST(TrackingThread, NeitherAllocatesNorLocksNorCallsTheSystem) {
   simulation.speed = 1.5;
   simulation.covered = {{90, 40}};
   simulation.shaken = {{60, 4}};
-  const SimulatedSequence sequence = makeSequence(simulation);
-  const WatchedRun run = watch(sequence.camera, [&](LiveRun& live) {
-    for (int i = 0; i < sequence.size(); ++i) {
-      const SimulatedFrame frame = sequence.frame(i);
-      feed(live, i, frame.time_ns, frame.grey, i == 70 ? "torn" : "");
-    }
-  });
+  return makeSequence(simulation);
+}
+
+void feedAll(const SimulatedSequence& sequence, LiveRun& run) {
+  for (int i = 0; i < sequence.size(); ++i) {
+    const SimulatedFrame frame = sequence.frame(i);
+    feed(run, i, frame.time_ns, frame.grey, i == 70 ? "torn" : "");
+  }
+}
+
+TEST(TrackingThread, NeitherAllocatesNorLocksNorCallsTheSystem) {
+  if (!canWatchThreads()) GTEST_SKIP() << "not under sanitizers";
+  const SimulatedSequence sequence = troubledSequence();
+  const WatchedRun run = watch(sequence.camera, [&](LiveRun& live) { feedAll(sequence, live); });
   expectNone(run.trespasses);
   EXPECT_GT(run.good, 40);
+}
+
+TEST(TrackingThread, NorWhileSomeoneLooksOn) {
+  if (!canWatchThreads()) GTEST_SKIP() << "not under sanitizers";
+  const SimulatedSequence sequence = troubledSequence();
+  const WatchedRun run = watch(
+      sequence.camera, [&](LiveRun& live) { feedAll(sequence, live); }, /*is_looked_at=*/true);
+  expectNone(run.trespasses);
+  EXPECT_GT(run.good, 40);
+  EXPECT_GT(run.looks, 40);
+  EXPECT_GT(run.looks_at_lost_frames, 0);
 }
 
 // Real images, with losses and relocalisations among them.

@@ -41,7 +41,12 @@ const char* const whole =
     "  odometry_window_m: 0.4\n"
     "  largest_sigma: 0.2\n"
     "  metres_per_unit: 1.5\n"
-    "  sigma: 0.01\n";
+    "  sigma: 0.01\n"
+    "viewer:\n"
+    "  enabled: true\n"
+    "  address: 0.0.0.0\n"
+    "  port: 8080\n"
+    "  token: 0123456789abcdef\n";
 
 TEST(ConfigurationService, ReadsEveryKey) {
   const ServiceOptions service = read(whole).service;
@@ -67,6 +72,23 @@ TEST(ConfigurationService, ReadsEveryKey) {
   EXPECT_EQ(service.scale.largest_sigma, 0.2);
   EXPECT_EQ(service.scale.metres_per_unit, 1.5);
   EXPECT_EQ(service.scale.sigma, 0.01);
+  EXPECT_TRUE(service.viewer.enabled);
+  EXPECT_EQ(service.viewer.address, "0.0.0.0");
+  EXPECT_EQ(service.viewer.port, 8080);
+  EXPECT_EQ(service.viewer.token, "0123456789abcdef");
+}
+
+TEST(ConfigurationService, ThePageIsOffAndForThisComputerAlone) {
+  const ViewerOptions viewer = Configuration().service.viewer;
+  EXPECT_FALSE(viewer.enabled);
+  EXPECT_EQ(viewer.address, "127.0.0.1");
+  EXPECT_EQ(viewer.token, "");
+}
+
+// Recordings and results keep the configuration that they were made with.
+TEST(ConfigurationService, TheTokenIsNotWrittenAnywhere) {
+  EXPECT_EQ(formatConfiguration(read(whole)).find("0123456789abcdef"), std::string::npos);
+  EXPECT_EQ(formatServiceSections(read("viewer: {enabled: true}\n")), "");
 }
 
 TEST(ConfigurationService, WhatIsWrittenReadsBackAsTheSame) {
@@ -97,6 +119,11 @@ TEST(ConfigurationService, WhatIsWrongIsToldByLineAndKey) {
   expectRefused("lcm:\n  ttl: 256\n", "2", "lcm.ttl: 256 is out of range");
   expectRefused("lcm:\n  url: nonsense\n", "2", "lcm: ");
   expectRefused("lcm:\n  pose_channel: SLAM_STATE\n", "2", "lcm: ");
+  expectRefused("viewer:\n  enabled: true\n  address: 0.0.0.0\n", "2", "viewer.token is needed");
+  expectRefused("viewer:\n  address: robot\n", "2", "viewer.address: 'robot' is no address");
+  expectRefused("viewer:\n  token: short\n", "2", "viewer.token: expected 16 to 128");
+  expectRefused("viewer:\n  port: 0\n", "2", "viewer.port: 0 is out of range");
+  expectRefused("viewer:\n  adress: 127.0.0.1\n", "2", "did you mean viewer.address?");
   expectRefused("lcm: 5\n", "1", "lcm: a mapping of keys is expected");
 }
 

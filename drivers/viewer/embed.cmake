@@ -1,0 +1,11 @@
+# The viewer's page, style and scripts as strings in the driver; three.js is the report's.
+set(viewer_folder ${CMAKE_CURRENT_LIST_DIR}/page)
+foreach(asset PAGE:page.html STYLE:style.css STREAM:stream.js PICTURE:picture.js MAP:map.js GRAPHS:graphs.js SCRIPT:view.js)
+  string(REPLACE ":" ";" asset ${asset})
+  list(GET asset 0 variable)
+  list(GET asset 1 file)
+  file(READ ${viewer_folder}/${file} VIEWER_${variable})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${viewer_folder}/${file})
+endforeach()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/viewer_page.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/viewer_page.cpp @ONLY)
+target_sources(edgeslam_viewer PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/viewer_page.cpp)

@@ -1,0 +1,230 @@
+#include "drivers/viewer/view_messages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "drivers/lcm/messages.h"
+#include "pipeline/map_records.h"
+
+namespace edgeslam {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int jpeg_quality = 70;
+constexpr float steps_a_pixel = 16;
+
+std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string begin(ViewMessage kind) { return std::string(1, static_cast<char>(kind)); }
+
+template <typename Whole>
+void append(std::string& message, Whole number) {
+  for (std::size_t i = 0; i < sizeof(Whole); ++i) {
+    message.push_back(static_cast<char>(static_cast<std::uint64_t>(number) >> (8 * i) & 0xFF));
+  }
+}
+
+void appendFloat(std::string& message, double value) {
+  const auto number = static_cast<float>(value);
+  std::uint32_t bits = 0;
+  static_assert(sizeof(bits) == sizeof(number));
+  std::memcpy(&bits, &number, sizeof(bits));
+  append(message, bits);
+}
+
+std::string beginBinary(ViewMessage kind, const Json& description) {
+  const std::string text = textOf(description);
+  std::string message = begin(kind);
+  append(message, static_cast<std::uint32_t>(text.size()));
+  return message + text;
+}
+
+// 65535 is kept for the end of a line.
+std::uint16_t coordinate(float pixel) {
+  const float steps = std::isfinite(pixel) ? steps_a_pixel * pixel : 0.0F;
+  return static_cast<std::uint16_t>(std::clamp(steps, 0.0F, 65534.0F));
+}
+
+void appendPixel(std::string& message, const Eigen::Vector2f& pixel) {
+  append(message, coordinate(pixel.x()));
+  append(message, coordinate(pixel.y()));
+}
+
+std::int8_t share(float value) {
+  return static_cast<std::int8_t>(std::clamp(std::isfinite(value) ? 127 * value : 0.0F, -127.0F, 127.0F));
+}
+
+std::uint8_t percent(float ratio) {
+  return static_cast<std::uint8_t>(std::isfinite(ratio) ? std::clamp(100 * ratio, 0.0F, 255.0F) : 255.0F);
+}
+
+void appendTrack(std::string& message, const SeenTrack& track) {
+  appendPixel(message, track.pixel);
+  appendPixel(message, track.keyframe_pixel);
+  append(message, share(track.normal.x()));
+  append(message, share(track.normal.y()));
+  const int flags = (track.corner ? 1 : 0) | (track.mapped ? 2 : 0) | (track.outlier ? 4 : 0);
+  append(message, static_cast<std::uint8_t>(flags));
+  append(message, std::uint8_t{0});
+}
+
+void appendEdges(std::string& message, const std::vector<SeenEdgePoint>& edges) {
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (i > 0 && edges[i].chain != edges[i - 1].chain) append(message, std::uint32_t{0xffffffff});
+    appendPixel(message, edges[i].pixel);
+  }
+}
+
+const cv::Mat& shownLevel(const ImagePyramid& pyramid) {
+  std::size_t level = 0;
+  while (level < 2 && level + 1 < pyramid.levels.size() && pyramid.levels[level].cols > most_picture_width) ++level;
+  return pyramid.levels[level];
+}
+
+Json poseOf(const Pose& pose) {
+  const Eigen::Vector3d& t = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  return {{"position", {t.x(), t.y(), t.z()}}, {"rotation", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+bool isFinite(const Pose& pose) { return pose.translation.allFinite() && pose.rotation.coeffs().allFinite(); }
+
+Json frameOf(const FrameResult& frame) {
+  Json json{{"index", frame.index},   {"utime", utimeOf(frame.time_ns)}, {"state", stateName(frame.state)},
+            {"reason", frame.reason}, {"tracked", frame.tracked_points}, {"mapped", frame.mapped_points},
+            {"pose", nullptr}};
+  if (frame.has_pose && isFinite(frame.world_T_camera)) json["pose"] = poseOf(frame.world_T_camera);
+  return json;
+}
+
+const char* scaleName(ScaleKind kind) {
+  switch (kind) {
+    case ScaleKind::unknown:
+      break;
+    case ScaleKind::known_distance:
+      return "known distance";
+    case ScaleKind::camera_height:
+      return "camera height";
+    case ScaleKind::odometry:
+      return "odometry";
+  }
+  return "unknown";
+}
+
+Json statusOf(const PublisherStatus& status) {
+  return {{"uptime_ms", status.uptime_ms},
+          {"captured", status.frames_captured},
+          {"dropped", status.frames_dropped},
+          {"unreadable", status.frames_unreadable},
+          {"recoveries", status.recoveries},
+          {"relocalisations", status.relocalisations},
+          {"loops", status.loops},
+          {"mapping_queue", status.mapping_queue},
+          {"keyframes", status.keyframes},
+          {"points", status.points},
+          {"recording", status.recording},
+          {"camera_problem", status.camera_problem},
+          {"scale_problem", status.scale_problem}};
+}
+
+// Every so manieth record, so that no more than `most` are left.
+template <typename Record>
+std::vector<Record> thinned(std::vector<Record> records, std::size_t most) {
+  if (records.size() <= most) return records;
+  std::vector<Record> kept;
+  for (std::size_t i = 0; i < most; ++i) kept.push_back(records[i * records.size() / most]);
+  return kept;
+}
+
+}  // namespace
+
+std::string helloMessage(const ViewerSetup& setup) {
+  const Camera& camera = setup.camera;
+  return begin(ViewMessage::hello) + textOf({{"version", setup.version},
+                                             {"source", setup.source},
+                                             {"commands", setup.commands},
+                                             {"camera",
+                                              {{"width", camera.width},
+                                               {"height", camera.height},
+                                               {"fx", camera.fx},
+                                               {"fy", camera.fy},
+                                               {"cx", camera.cx},
+                                               {"cy", camera.cy}}}});
+}
+
+std::string stateMessage(const ViewedState& state, const std::vector<FrameSample>& samples) {
+  Json frames = Json::array();
+  for (const FrameSample& sample : samples) {
+    frames.push_back({sample.utime, stateName(sample.state), sample.latency_ms, sample.tracking_ms});
+  }
+  Json json{{"frame", nullptr},
+            {"samples", frames},
+            {"status", statusOf(state.status)},
+            {"scale",
+             {{"from", scaleName(state.scale.kind)},
+              {"metres_per_unit", state.scale.metres_per_unit},
+              {"sigma", state.scale.sigma}}},
+            {"lcm_problem", state.lcm_problem},
+            {"note", state.note}};
+  if (state.has_frame) json["frame"] = frameOf(state.frame);
+  return begin(ViewMessage::state) + textOf(json);
+}
+
+std::string pictureMessage(const FrameLook& look) {
+  if (!look.images || look.images->pyramid.levels.empty()) return "";
+  const cv::Mat& whole = look.images->pyramid.levels[0];
+  std::vector<unsigned char> jpeg;
+  cv::imencode(".jpg", shownLevel(look.images->pyramid), jpeg, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality});
+  std::string edges;
+  appendEdges(edges, look.edges);
+  std::string message = beginBinary(ViewMessage::picture, {{"index", look.index},
+                                                           {"utime", utimeOf(look.time_ns)},
+                                                           {"state", stateName(look.state)},
+                                                           {"width", whole.cols},
+                                                           {"height", whole.rows},
+                                                           {"jpeg_bytes", jpeg.size()},
+                                                           {"tracks", look.tracks.size()},
+                                                           {"edge_points", edges.size() / 4}});
+  message.append(jpeg.begin(), jpeg.end());
+  for (const SeenTrack& track : look.tracks) appendTrack(message, track);
+  return message + edges;
+}
+
+std::string mapMessage(const Map& map, const Camera& camera) {
+  std::vector<MapPointRecord> points = mapPointRecords(map, camera);
+  const std::size_t all = points.size();
+  points.erase(std::remove_if(points.begin(), points.end(),
+                              [](const MapPointRecord& point) { return !point.position.cast<float>().allFinite(); }),
+               points.end());
+  points = thinned(std::move(points), most_viewed_points);
+  std::vector<KeyframeRecord> keyframes;
+  for (const KeyframeRecord& keyframe : keyframeRecords(map)) {
+    if (isFinite(keyframe.world_T_camera)) keyframes.push_back(keyframe);
+  }
+  const std::size_t all_keyframes = keyframes.size();
+  keyframes = thinned(std::move(keyframes), most_viewed_keyframes);
+  std::string message = beginBinary(ViewMessage::map, {{"points", points.size()},
+                                                       {"points_in_map", all},
+                                                       {"keyframes", keyframes.size()},
+                                                       {"keyframes_in_map", all_keyframes}});
+  for (const MapPointRecord& point : points) {
+    for (int axis = 0; axis < 3; ++axis) appendFloat(message, point.position[axis]);
+  }
+  for (const MapPointRecord& point : points) append(message, static_cast<std::uint8_t>(point.grey));
+  for (const MapPointRecord& point : points) append(message, percent(point.depth_sigma_ratio));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    append(message, static_cast<std::uint8_t>(i > 0 && points[i].chain == points[i - 1].chain));
+  }
+  for (const KeyframeRecord& keyframe : keyframes) {
+    const Pose& pose = keyframe.world_T_camera;
+    for (int axis = 0; axis < 3; ++axis) appendFloat(message, pose.translation[axis]);
+    for (int i = 0; i < 4; ++i) appendFloat(message, pose.rotation.coeffs()[i]);
+  }
+  return message;
+}
+
+}  // namespace edgeslam

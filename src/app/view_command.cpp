@@ -1,0 +1,83 @@
+#include "app/view_command.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "app/command_line.h"
+#include "app/daemon.h"
+#include "dataset/frame_source.h"
+#include "dataset/recording_source.h"
+
+namespace edgeslam {
+namespace {
+
+struct ViewArguments {
+  std::string input, configuration;
+  int port = -1;  // the configuration's
+};
+
+// A recording brings the configuration that it was made with.
+Configuration configurationOf(const ViewArguments& arguments, const FrameSource& source) {
+  if (!arguments.configuration.empty()) return readConfiguration(arguments.configuration);
+  if (const auto* recording = dynamic_cast<const RecordingSource*>(&source)) {
+    return readConfiguration(recording->recording().configuration_path);
+  }
+  return Configuration();
+}
+
+Camera cameraOf(const ViewArguments& arguments, const Configuration& configuration, const FrameSource& source) {
+  if (configuration.camera) return *configuration.camera;
+  if (source.camera()) return *source.camera();
+  throw InputError(
+      arguments.input +
+      ": no calibration: put a camera.yaml beside the frames, or give one in the configuration (camera.calibration)");
+}
+
+// Nothing is sent to a robot and nothing is written: it is for looking.
+DaemonSetup setupOf(const ViewArguments& arguments) {
+  const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
+  DaemonSetup setup;
+  setup.configuration = configurationOf(arguments, *source);
+  setup.camera = cameraOf(arguments, setup.configuration, *source);
+  setup.capture.device = arguments.input;
+  setup.capture.width = setup.camera.width;
+  setup.capture.height = setup.camera.height;
+  setup.for_viewing = true;
+  ServiceOptions& service = setup.configuration.service;
+  service.lcm = LcmOptions();
+  service.lcm.url = "memq://";
+  service.map_file.clear();
+  service.goes_on_with_map = false;
+  service.recordings_folder.clear();
+  service.records_from_start = false;
+  service.viewer.enabled = true;
+  if (arguments.port >= 0) service.viewer.port = arguments.port;
+  if (const std::string wrong = viewerProblem(service.viewer); !wrong.empty()) throw InputError(wrong);
+  return setup;
+}
+
+int runView(const ViewArguments& arguments) {
+  EventLog log(std::cerr);
+  Daemon daemon(setupOf(arguments), log);
+  daemon.run();
+  return exit_done;
+}
+
+}  // namespace
+
+void addViewCommand(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<ViewArguments>();
+  CLI::App* command = app.add_subcommand(
+      "view", "Run over recorded frames at their own pace, as on the robot, and show it on a page in the browser");
+  command
+      ->add_option("INPUT", arguments->input,
+                   "As of `edgeslam replay`: folder of a dataset, folder of images, video, recording of a live run")
+      ->required();
+  command->add_option("--config", arguments->configuration, "Configuration file (YAML); its section viewer: counts");
+  command->add_option("--port", arguments->port, "Of the page, TCP (default: viewer.port, 8417); 0: a free one")
+      ->check(CLI::Range(0, 65535));
+  command->callback([arguments, &exit_code] { exit_code = runView(*arguments); });
+}
+
+}  // namespace edgeslam
