@@ -1,6 +1,7 @@
 // Runs the stages up to the flow over pictures that are made in integers, and prints a hash of all that each of them
 // gives: `SET STAGE PICTURE HASH`. Built for two processors, it prints the same lines where they give the same bits.
-// SET is `integer`, or `float` where there is floating point on the way.
+// SET is `integer`; `float` where there is floating point on the way; `libm` where there are functions of the C
+// library, too.
 #include <hwy/highway.h>
 
 #include <cstdint>
@@ -156,7 +157,7 @@ void printFlow(const Frame& from, const Frame& to, int number) {
   print("float", "flow", number, flow);
 }
 
-void printBearings(CameraModel model, const std::array<double, 5>& distortion, int number) {
+void printBearings(const char* set, CameraModel model, const std::array<double, 5>& distortion, int number) {
   const Camera camera{model, width, height, 260, 261, 158.5, 121.25, distortion};
   std::vector<Eigen::Vector2d> pixels;
   for (int i = 0; i < 1000; ++i) pixels.emplace_back(i * 37 % width + i * 0.001, i * 53 % height + i * 0.0007);
@@ -167,8 +168,8 @@ void printBearings(CameraModel model, const std::array<double, 5>& distortion, i
     found.add(bearing);
     projected.add(project(camera, bearing));
   }
-  print("float", "bearings", number, found);
-  print("float", "projections", number, projected);
+  print(set, "bearings", number, found);
+  print(set, "projections", number, projected);
 }
 
 Frame process(int number) {
@@ -199,8 +200,8 @@ int run() {
     }
     before = std::move(frame);
   }
-  printBearings(CameraModel::pinhole_radial_tangential, {-0.28, 0.07, 0.0002, 0.00002, 0}, 0);
-  printBearings(CameraModel::kannala_brandt, {-0.01, 0.02, -0.003, 0.001, 0}, 1);
+  printBearings("float", CameraModel::pinhole_radial_tangential, {-0.28, 0.07, 0.0002, 0.00002, 0}, 0);
+  printBearings("libm", CameraModel::kannala_brandt, {-0.01, 0.02, -0.003, 0.001, 0}, 1);
   return 0;
 }
 
