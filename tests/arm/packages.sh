@@ -1,9 +1,8 @@
 #!/bin/bash
 # The packages for arm64: what they ask for is to be had, and the program runs in a Debian that has just that.
-# usage: packages.sh SOURCES FOLDER     As root, with a Debian mirror in reach; 77: not here.
+# usage: packages.sh FOLDER     As root, with a Debian mirror in reach; 77: not here.
 set -euo pipefail
-sources=$1
-folder=$2
+folder=$1
 suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
 
 [[ -x $folder/build/edgeslam ]] || { echo "skipped: no build"; exit 77; }
