@@ -30,11 +30,12 @@ for library in libc6 libopencv-core406 liblcm1 libsystemd0; do
 done
 
 # No script of a package can run without an ARM processor: what libraries would link, is linked.
-libraries=$(sed -E 's/ *\([^)]*\)//g; s/ *\|[^,]*//g; s/, */ /g' <<< "$depends")
+needed=$(sed -E 's/ *\([^)]*\)//g; s/ *\|[^,]*//g; s/, */ /g' <<< "$depends")
 mmdebstrap --quiet --variant=extract --architectures=arm64 --mode=root --skip=chroot/mount \
-  --include="$(tr -s ' ' , <<< "$libraries")" "$suite" "$root"
-for name in blas lapack; do
-  ln -sf "$name/lib$name.so.3" "$root/usr/lib/aarch64-linux-gnu/lib$name.so.3"
+  --include="$(tr -s ' ' , <<< "$needed")" "$suite" "$root"
+libraries=$root/usr/lib/aarch64-linux-gnu
+for name in libblas.so.3 liblapack.so.3; do
+  ln -sf "$(cd "$libraries" && find . -mindepth 2 -name "$name" | sort | head -1)" "$libraries/$name"
 done
 dpkg-deb -x "$package" "$root"
 cp "$(command -v qemu-aarch64-static)" "$root/qemu"
