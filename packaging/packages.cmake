@@ -22,6 +22,16 @@ elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^arm")
   set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE armhf)
 endif()
 
+if(CMAKE_CROSSCOMPILING)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS)
+  foreach(folder lib usr/lib usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/blas usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/lapack)
+    string(REGEX REPLACE "lib$" "lib/${CMAKE_LIBRARY_ARCHITECTURE}" folder ${folder})
+    list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_SYSROOT}/${folder})
+  endforeach()
+  set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_BINARY_DIR}/cross_packages.cmake)
+  configure_file(packaging/cross_packages.cmake.in ${CPACK_PROJECT_CONFIG_FILE} @ONLY)
+endif()
+
 set(CPACK_COMPONENT_EDGESLAM_DESCRIPTION "monocular SLAM on image edges, as a service over LCM
 Edge SLAM tells a robot with one camera where it is, at every frame, also in front
 of bare walls: it follows points on image edges, builds a 3D map of them, and

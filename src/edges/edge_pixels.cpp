@@ -178,6 +178,8 @@ struct Thresholds {
 
 // What a vector of candidates is worth, and which of them are edges.
 struct Judged {
+  HWY_ATTR Judged() {}  // one that the compiler makes is not of the instruction set, and NEON vectors have constructors
+
   FloatVector pixel_x;
   FloatVector pixel_y;
   FloatVector normal_x;

@@ -1,6 +1,5 @@
 #include "flow/patch_alignment.h"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "flow/warped_window.h"
@@ -97,6 +96,27 @@ float correlation(const PatchTemplate& patch, const PatchComparison& comparison)
   return comparison.product / std::sqrt(std::max(least_square, comparison.square * patch.normal_matrix(2, 2)));
 }
 
+// Sums of three floats are written out: in what order Eigen adds them up depends on the processor.
+float dot(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return a.x() * b.x() + (a.y() * b.y() + a.z() * b.z());
+}
+
+// The first two rows, of which the steps are made, of the inverse of a symmetric matrix.
+struct InverseRows {
+  Eigen::Vector3f x, y;
+};
+
+InverseRows invert(const Eigen::Matrix3f& h) {
+  const auto cofactor = [&h](int row, int column) {
+    const int a = (row + 1) % 3, b = (row + 2) % 3, c = (column + 1) % 3, d = (column + 2) % 3;
+    return h(a, c) * h(b, d) - h(a, d) * h(b, c);
+  };
+  const Eigen::Vector3f of_x(cofactor(0, 0), cofactor(1, 0), cofactor(2, 0));
+  const Eigen::Vector3f of_y(cofactor(0, 1), cofactor(1, 1), cofactor(2, 1));
+  const float scale = 1 / dot(of_x, h.col(0));
+  return {of_x * scale, of_y * scale};
+}
+
 }  // namespace
 
 bool makeTemplate(const cv::Mat& image, const Eigen::Vector2f& pixel, const Eigen::Matrix2f& warp, int side,
@@ -124,7 +144,7 @@ AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, con
   h(0, 0) += damping;
   h(1, 1) += damping;
   h(2, 2) += count;  // keeps the gain defined on a flat patch
-  const Eigen::Matrix3f inverse = h.inverse();
+  const InverseRows inverse = invert(h);
 
   AlignmentResult result;
   result.pixel = start;
@@ -139,7 +159,7 @@ AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, con
     const Eigen::Vector3f right(comparison.with_x - patch.normal_matrix(0, 2) + pull.x(),
                                 comparison.with_y - patch.normal_matrix(1, 2) + pull.y(),
                                 comparison.product - patch.normal_matrix(2, 2));
-    const Eigen::Vector2f step = (inverse * right).head<2>();
+    const Eigen::Vector2f step(dot(inverse.x, right), dot(inverse.y, right));
     result.pixel -= step;
     if (step.squaredNorm() < options.convergence * options.convergence) {
       result.converged = true;
