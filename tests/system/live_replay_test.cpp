@@ -34,7 +34,8 @@ TEST(LiveReplay, ARecordingRepeatsTheRunUnderLoadToTheLastByte) {
   EXPECT_GT(fileContent(folder.path("live") + "/trajectory.txt").size(), 200U);
   for (const char* name : {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "map.ply"}) {
     const std::string content = fileContent(folder.path("live") + "/" + name);
-    EXPECT_EQ(content, fileContent(folder.path("repeated") + "/" + name)) << name;
+    EXPECT_TRUE(content == fileContent(folder.path("repeated") + "/" + name))
+        << name << "; live: " << live.messages << "; repeated: " << repeated.messages;
   }
 }
 
