@@ -8,6 +8,7 @@
 
 #include "app/configuration_keys.h"
 #include "dataset/calibration_file.h"
+#include "map/map_check.h"
 
 namespace edgeslam {
 namespace {
@@ -23,19 +24,19 @@ const char* modelName(CameraModel model) {
 std::vector<ConfigurationKey> calibrationKeys(Camera& camera) {
   std::array<double, 5>& k = camera.distortion;
   std::vector<ConfigurationKey> keys{
-      {"camera.width", &camera.width, "px", 16, 16384, "image width"},
-      {"camera.height", &camera.height, "px", 16, 16384, "image height"},
-      {"camera.fx", &camera.fx, "px", 1, 1e6, "focal length along x"},
-      {"camera.fy", &camera.fy, "px", 1, 1e6, "focal length along y"},
-      {"camera.cx", &camera.cx, "px", 0, 16384, "principal point"},
-      {"camera.cy", &camera.cy, "px", 0, 16384, "principal point"},
+      {"camera.width", &camera.width, "px", 1, largest_image_side, "image width"},
+      {"camera.height", &camera.height, "px", 1, largest_image_side, "image height"},
+      {"camera.fx", &camera.fx, "px", least_focal_length_px, largest_focal_length_px, "focal length along x"},
+      {"camera.fy", &camera.fy, "px", least_focal_length_px, largest_focal_length_px, "focal length along y"},
+      {"camera.cx", &camera.cx, "px", 0, largest_image_side, "principal point"},
+      {"camera.cy", &camera.cy, "px", 0, largest_image_side, "principal point"},
   };
   const bool fisheye = camera.model == CameraModel::kannala_brandt;
   const std::array<const char*, 5> fisheye_names{"k1", "k2", "k3", "k4", ""};
   const std::array<const char*, 5> radial_tangential_names{"k1", "k2", "p1", "p2", "k3"};
   for (std::size_t i = 0; i < (fisheye ? 4U : 5U); ++i) {
     const std::string name = fisheye ? fisheye_names[i] : radial_tangential_names[i];
-    keys.push_back({"camera." + name, &k[i], "", -100, 100, "distortion"});
+    keys.push_back({"camera." + name, &k[i], "", -largest_distortion, largest_distortion, "distortion"});
   }
   return keys;
 }

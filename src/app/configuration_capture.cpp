@@ -63,11 +63,19 @@ struct SectionReader {
     options.region = {numbers[0], numbers[1], numbers[2], numbers[3]};
   }
 
+  // Over what an included file said.
+  void set(const std::string& name, const std::string& value) const {
+    std::vector<ControlSetting>& controls = options.controls;
+    controls.erase(std::remove_if(controls.begin(), controls.end(), [&](const auto& c) { return c.name == name; }),
+                   controls.end());
+    controls.push_back({name, value});
+  }
+
   void readControl(const std::string& key, const std::string& name, const YAML::Node& value) const {
     if (!value.IsScalar() || value.Scalar().empty() || value.Scalar().size() > 100) {
       return tell(value.Mark().line, key + ": a number or a word is expected");
     }
-    options.controls.push_back({name, value.Scalar()});
+    set(name, value.Scalar());
   }
 
   void readSharedControl(const std::string& name, const YAML::Node& value) const {
@@ -76,12 +84,12 @@ struct SectionReader {
     const bool is_line = name == "power_line_frequency";
     const std::string text = value.IsScalar() ? value.Scalar() : "";
     if (text == "auto" || (is_line && (text == "off" || text == "false"))) {  // off is false in YAML 1.1
-      options.controls.push_back({name, text == "auto" ? "auto" : "off"});
+      set(name, text == "auto" ? "auto" : "off");
     } else if (!parseNumber(text, number) || number < 0 || (is_line && number != 50 && number != 60)) {
       tell(value.Mark().line, key + ": '" + text + "' is not possible; expected " +
                                   (is_line ? "50, 60, off or auto" : "auto or a number from 0 on"));
     } else {
-      options.controls.push_back({name, text});
+      set(name, text);
     }
   }
 
