@@ -14,8 +14,8 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-// The formats by how their files begin; '?' stands for any byte. OpenCV alone would take whatever one of its libraries
-// claims to know, and write the rest to /tmp for GDAL, some of whose formats name other files and hosts to read.
+// The formats by how their files begin; '?' stands for any byte. OpenCV alone would hand
+// some bytes to GDAL, through a file in /tmp; among GDAL's formats are some that name other files and hosts to read.
 bool isImageFormat(const Bytes& bytes) {
   using namespace std::string_view_literals;
   constexpr std::array<std::string_view, 12> beginnings{"\x89PNG\r\n\x1a\n"sv,
