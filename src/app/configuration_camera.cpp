@@ -14,6 +14,7 @@ namespace edgeslam {
 namespace {
 
 constexpr double rotation_tolerance = 1e-3;  // of a matrix's or a quaternion's departure from a rotation
+constexpr double rounding = 1e-12;           // a quaternion so near to length 1 is kept to the last bit
 
 const char* modelName(CameraModel model) {
   return model == CameraModel::kannala_brandt ? "kannala_brandt" : "pinhole_radial_tangential";
@@ -148,7 +149,8 @@ std::string poseFromMapping(const YAML::Node& node, Pose& pose) {
   if (t.empty() || q.empty()) return "both translation and quaternion are needed";
   const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
   if (!(std::abs(rotation.norm() - 1) < rotation_tolerance)) return "the quaternion's length is not 1";
-  pose = {rotation.normalized(), {t[0], t[1], t[2]}};
+  const bool is_unit = std::abs(rotation.norm() - 1) < rounding;
+  pose = {is_unit ? rotation : rotation.normalized(), {t[0], t[1], t[2]}};
   return "";
 }
 

@@ -114,8 +114,10 @@ struct SectionReader {
   }
 };
 
+// As it can stand in "{...}", too, where a comma or bracket ends a word.
 std::string quoted(const std::string& text) {
   YAML::Emitter emitter;
+  if (text.find_first_of(",[]{}") != std::string::npos) emitter << YAML::DoubleQuoted;
   emitter << text;
   return emitter.c_str();
 }

@@ -79,6 +79,13 @@ TEST(ConfigurationCapture, AControlIsSetOverWhatAnIncludedFileSays) {
   EXPECT_EQ(formatCaptureSection(captureOf(text)), text);
 }
 
+TEST(ConfigurationCapture, ControlsWithCommasAndBracketsAreReadBack) {
+  const CameraOptions first = captureOf("capture: {controls: {'Exposure, Auto': 'a [b', 'x}': '{', '# y': ': z'}}\n");
+  const CameraOptions again = captureOf(formatCaptureSection(first));
+  ASSERT_EQ(again.controls.size(), 3U);
+  for (const ControlSetting& control : first.controls) EXPECT_EQ(controlOf(again, control.name), control.value);
+}
+
 TEST(ConfigurationCapture, WithoutTheSectionNothingIsAskedFor) {
   EXPECT_EQ(formatCaptureSection(captureOf("")), "");
   EXPECT_EQ(formatCaptureSection(captureOf("capture:\n")), "");
