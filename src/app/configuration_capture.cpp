@@ -31,6 +31,12 @@ bool isSharedControl(const std::string& name) {
   return std::find(sharedControls().begin(), sharedControls().end(), name) != sharedControls().end();
 }
 
+// In the order in which controls are set: 0 for the driver's own.
+std::ptrdiff_t placeOf(const std::string& control) {
+  const auto found = std::find(sharedControls().begin(), sharedControls().end(), control);
+  return found == sharedControls().end() ? 0 : 1 + (found - sharedControls().begin());
+}
+
 struct SectionReader {
   CameraOptions& options;
   const TellProblem& tell;
@@ -154,6 +160,9 @@ void readCaptureSection(const YAML::Node& section, CameraOptions& options, const
   for (const std::string& name : sharedControls()) {
     if (const YAML::Node value = section[name]) reader.readSharedControl(name, value);
   }
+  // The same order where an included file set some of them.
+  std::stable_sort(options.controls.begin(), options.controls.end(),
+                   [](const auto& a, const auto& b) { return placeOf(a.name) < placeOf(b.name); });
 }
 
 std::string formatCaptureSection(const CameraOptions& options) {
