@@ -141,7 +141,7 @@ class Reader {
 
 std::string formatted(const Problem& problem, const std::string& path) {
   const std::string line = problem.line < 0 ? "" : ":" + std::to_string(problem.line + 1);
-  return path + line + ": " + problem.text;
+  return InputError::oneLine(path + line + ": " + problem.text);
 }
 
 void readFile(const std::string& path, bool may_include, Configuration& configuration,

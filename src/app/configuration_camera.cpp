@@ -8,11 +8,13 @@
 
 #include "app/configuration_keys.h"
 #include "dataset/calibration_file.h"
+#include "map/map_check.h"
 
 namespace edgeslam {
 namespace {
 
 constexpr double rotation_tolerance = 1e-3;  // of a matrix's or a quaternion's departure from a rotation
+constexpr double rounding = 1e-12;           // a quaternion so near to length 1 is kept to the last bit
 
 const char* modelName(CameraModel model) {
   return model == CameraModel::kannala_brandt ? "kannala_brandt" : "pinhole_radial_tangential";
@@ -23,19 +25,19 @@ const char* modelName(CameraModel model) {
 std::vector<ConfigurationKey> calibrationKeys(Camera& camera) {
   std::array<double, 5>& k = camera.distortion;
   std::vector<ConfigurationKey> keys{
-      {"camera.width", &camera.width, "px", 16, 16384, "image width"},
-      {"camera.height", &camera.height, "px", 16, 16384, "image height"},
-      {"camera.fx", &camera.fx, "px", 1, 1e6, "focal length along x"},
-      {"camera.fy", &camera.fy, "px", 1, 1e6, "focal length along y"},
-      {"camera.cx", &camera.cx, "px", 0, 16384, "principal point"},
-      {"camera.cy", &camera.cy, "px", 0, 16384, "principal point"},
+      {"camera.width", &camera.width, "px", 1, largest_image_side, "image width"},
+      {"camera.height", &camera.height, "px", 1, largest_image_side, "image height"},
+      {"camera.fx", &camera.fx, "px", least_focal_length_px, largest_focal_length_px, "focal length along x"},
+      {"camera.fy", &camera.fy, "px", least_focal_length_px, largest_focal_length_px, "focal length along y"},
+      {"camera.cx", &camera.cx, "px", 0, largest_image_side, "principal point"},
+      {"camera.cy", &camera.cy, "px", 0, largest_image_side, "principal point"},
   };
   const bool fisheye = camera.model == CameraModel::kannala_brandt;
   const std::array<const char*, 5> fisheye_names{"k1", "k2", "k3", "k4", ""};
   const std::array<const char*, 5> radial_tangential_names{"k1", "k2", "p1", "p2", "k3"};
   for (std::size_t i = 0; i < (fisheye ? 4U : 5U); ++i) {
     const std::string name = fisheye ? fisheye_names[i] : radial_tangential_names[i];
-    keys.push_back({"camera." + name, &k[i], "", -100, 100, "distortion"});
+    keys.push_back({"camera." + name, &k[i], "", -largest_distortion, largest_distortion, "distortion"});
   }
   return keys;
 }
@@ -147,7 +149,8 @@ std::string poseFromMapping(const YAML::Node& node, Pose& pose) {
   if (t.empty() || q.empty()) return "both translation and quaternion are needed";
   const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
   if (!(std::abs(rotation.norm() - 1) < rotation_tolerance)) return "the quaternion's length is not 1";
-  pose = {rotation.normalized(), {t[0], t[1], t[2]}};
+  const bool is_unit = std::abs(rotation.norm() - 1) < rounding;
+  pose = {is_unit ? rotation : rotation.normalized(), {t[0], t[1], t[2]}};
   return "";
 }
 

@@ -31,6 +31,12 @@ bool isSharedControl(const std::string& name) {
   return std::find(sharedControls().begin(), sharedControls().end(), name) != sharedControls().end();
 }
 
+// In the order in which controls are set: 0 for the driver's own.
+std::ptrdiff_t placeOf(const std::string& control) {
+  const auto found = std::find(sharedControls().begin(), sharedControls().end(), control);
+  return found == sharedControls().end() ? 0 : 1 + (found - sharedControls().begin());
+}
+
 struct SectionReader {
   CameraOptions& options;
   const TellProblem& tell;
@@ -63,11 +69,19 @@ struct SectionReader {
     options.region = {numbers[0], numbers[1], numbers[2], numbers[3]};
   }
 
+  // Over what an included file said.
+  void set(const std::string& name, const std::string& value) const {
+    std::vector<ControlSetting>& controls = options.controls;
+    controls.erase(std::remove_if(controls.begin(), controls.end(), [&](const auto& c) { return c.name == name; }),
+                   controls.end());
+    controls.push_back({name, value});
+  }
+
   void readControl(const std::string& key, const std::string& name, const YAML::Node& value) const {
     if (!value.IsScalar() || value.Scalar().empty() || value.Scalar().size() > 100) {
       return tell(value.Mark().line, key + ": a number or a word is expected");
     }
-    options.controls.push_back({name, value.Scalar()});
+    set(name, value.Scalar());
   }
 
   void readSharedControl(const std::string& name, const YAML::Node& value) const {
@@ -76,12 +90,12 @@ struct SectionReader {
     const bool is_line = name == "power_line_frequency";
     const std::string text = value.IsScalar() ? value.Scalar() : "";
     if (text == "auto" || (is_line && (text == "off" || text == "false"))) {  // off is false in YAML 1.1
-      options.controls.push_back({name, text == "auto" ? "auto" : "off"});
+      set(name, text == "auto" ? "auto" : "off");
     } else if (!parseNumber(text, number) || number < 0 || (is_line && number != 50 && number != 60)) {
       tell(value.Mark().line, key + ": '" + text + "' is not possible; expected " +
                                   (is_line ? "50, 60, off or auto" : "auto or a number from 0 on"));
     } else {
-      options.controls.push_back({name, text});
+      set(name, text);
     }
   }
 
@@ -106,8 +120,10 @@ struct SectionReader {
   }
 };
 
+// As it can stand in "{...}", too, where a comma or bracket ends a word.
 std::string quoted(const std::string& text) {
   YAML::Emitter emitter;
+  if (text.find_first_of(",[]{}") != std::string::npos) emitter << YAML::DoubleQuoted;
   emitter << text;
   return emitter.c_str();
 }
@@ -144,6 +160,9 @@ void readCaptureSection(const YAML::Node& section, CameraOptions& options, const
   for (const std::string& name : sharedControls()) {
     if (const YAML::Node value = section[name]) reader.readSharedControl(name, value);
   }
+  // The same order where an included file set some of them.
+  std::stable_sort(options.controls.begin(), options.controls.end(),
+                   [](const auto& a, const auto& b) { return placeOf(a.name) < placeOf(b.name); });
 }
 
 std::string formatCaptureSection(const CameraOptions& options) {

@@ -190,7 +190,9 @@ void readServiceSection(const std::string& section, const YAML::Node& node, Conf
     if (const std::string wrong = lcmProblem(configuration.service.lcm); !wrong.empty())
       tell(node.Mark().line, "lcm: " + wrong);
   }
-  if (section == "scale") {
+  // The wheels' channel may be in a section before this one, or in an included file.
+  const bool is_for_scale = section == "lcm" && configuration.service.scale.source == "odometry";
+  if (section == "scale" || is_for_scale) {
     if (const std::string wrong = scaleProblem(configuration.service); !wrong.empty()) tell(node.Mark().line, wrong);
   }
   if (section == "viewer") {

@@ -11,6 +11,7 @@
 
 #include "dataset/text_file.h"
 #include "edgeslam/input_error.h"
+#include "map/map_check.h"
 
 namespace edgeslam {
 namespace {
@@ -143,24 +144,29 @@ class Section {
 
 // Names of the keys that the values of a camera were read from, for messages.
 struct CameraKeys {
-  std::string width, height, fx, fy, cx, cy;
+  std::string width, height, fx, fy, cx, cy, distortion;
 };
 
 void checkCamera(const Section& section, const Camera& camera, const CameraKeys& keys) {
-  constexpr int kLargestSide = 32768;
-  if (camera.width < 1 || camera.width > kLargestSide) {
+  if (camera.width < 1 || camera.width > largest_image_side) {
     section.failAt(keys.width, "the image's width must be 1 to 32768 pixels, it is " + std::to_string(camera.width));
   }
-  if (camera.height < 1 || camera.height > kLargestSide) {
+  if (camera.height < 1 || camera.height > largest_image_side) {
     section.failAt(keys.height, "the image's height must be 1 to 32768 pixels, it is " + std::to_string(camera.height));
   }
-  if (!(camera.fx > 0)) section.failAt(keys.fx, "the focal length fx must be greater than 0");
-  if (!(camera.fy > 0)) section.failAt(keys.fy, "the focal length fy must be greater than 0");
+  const auto isFocalLength = [](double f) { return f >= least_focal_length_px && f <= largest_focal_length_px; };
+  if (!isFocalLength(camera.fx)) section.failAt(keys.fx, "the focal length fx must be greater than 0, 0.001 to 1e6 px");
+  if (!isFocalLength(camera.fy)) section.failAt(keys.fy, "the focal length fy must be greater than 0, 0.001 to 1e6 px");
   if (!(camera.cx >= 0 && camera.cx <= camera.width - 1)) {
     section.failAt(keys.cx, "the centre cx must lie in the image, in 0 to " + std::to_string(camera.width - 1));
   }
   if (!(camera.cy >= 0 && camera.cy <= camera.height - 1)) {
     section.failAt(keys.cy, "the centre cy must lie in the image, in 0 to " + std::to_string(camera.height - 1));
+  }
+  for (const double coefficient : camera.distortion) {
+    if (std::abs(coefficient) > largest_distortion) {
+      section.failAt(keys.distortion, "the coefficients of the distortion must be -1e6 to 1e6");
+    }
   }
 }
 
@@ -187,10 +193,14 @@ Camera readOwn(const Section& section) {
   camera.cx = section.number("cx");
   camera.cy = section.number("cy");
   for (std::size_t i = 0; i < distortion.size(); ++i) {
-    if (section.has(distortion[i])) camera.distortion[i] = section.number(distortion[i]);
+    if (!section.has(distortion[i])) continue;
+    camera.distortion[i] = section.number(distortion[i]);
+    if (std::abs(camera.distortion[i]) > largest_distortion) {
+      section.failAt(distortion[i], "the coefficients of the distortion must be -1e6 to 1e6");
+    }
   }
   if (section.has("fps") && !(section.number("fps") > 0)) section.failAt("fps", "'fps' must be greater than 0");
-  checkCamera(section, camera, {"width", "height", "fx", "fy", "cx", "cy"});
+  checkCamera(section, camera, {"width", "height", "fx", "fy", "cx", "cy", "width"});
   return camera;
 }
 
@@ -229,7 +239,8 @@ Camera readRos(const Section& section) {
     section.failAt("distortion_model", "'distortion_model' must be plumb_bob or equidistant, found '" + model + "'");
   }
   checkCamera(section, camera,
-              {"image_width", "image_height", "camera_matrix", "camera_matrix", "camera_matrix", "camera_matrix"});
+              {"image_width", "image_height", "camera_matrix", "camera_matrix", "camera_matrix", "camera_matrix",
+               "distortion_coefficients"});
   return camera;
 }
 
@@ -266,7 +277,8 @@ Camera readCalibrationLists(const Section& section, const std::string& coefficie
     section.failAt("distortion_model", "'distortion_model' must be " + radial_tangential_name +
                                            ", equidistant or none, found '" + model + "'");
   }
-  checkCamera(section, camera, {"resolution", "resolution", "intrinsics", "intrinsics", "intrinsics", "intrinsics"});
+  checkCamera(section, camera,
+              {"resolution", "resolution", "intrinsics", "intrinsics", "intrinsics", "intrinsics", "distortion_model"});
   return camera;
 }
 

@@ -23,6 +23,15 @@ void checkIncreasing(const std::string& list_path, const TextLine& line, const s
                    " s); time stamps must increase");
 }
 
+// The path of a file that a list names. Control characters are in no name that a data set has, only in a damaged list.
+std::string pathInFolder(const fs::path& folder, std::string_view name, const std::string& place) {
+  const auto isControl = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+  if (std::any_of(name.begin(), name.end(), isControl)) {
+    throw InputError(place + "the file's name '" + std::string(name) + "' has control characters");
+  }
+  return (folder / std::string(name)).string();
+}
+
 // Column of the colour image's name: in associations.txt it may come second or fourth.
 std::size_t colourColumn(const std::vector<std::string_view>& columns) {
   if (columns.size() >= 4 && columns[1].find("depth") != std::string_view::npos) return 3;
@@ -94,7 +103,7 @@ std::vector<StampedFile> readTumImageList(const std::string& list_path) {
                        "' is not a time stamp [s]");
     }
     checkIncreasing(list_path, line, files, *time);
-    files.push_back({*time, (folder / std::string(columns[column])).string()});
+    files.push_back({*time, pathInFolder(folder, columns[column], placeInFile(list_path, line.number))});
   }
   if (files.empty()) throw InputError(list_path + ": lists no frames; expected lines 'time-stamp file'");
   return files;
@@ -111,7 +120,7 @@ std::vector<StampedFile> readEurocImageList(const std::string& csv_path) {
                        "'");
     }
     checkIncreasing(csv_path, line, files, *time);
-    files.push_back({*time, (folder / std::string(columns[1])).string()});
+    files.push_back({*time, pathInFolder(folder, columns[1], placeInFile(csv_path, line.number))});
   }
   if (files.empty()) throw InputError(csv_path + ": lists no frames; expected lines 'time-stamp [ns],file'");
   return files;

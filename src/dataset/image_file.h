@@ -11,8 +11,9 @@ struct DecodedImage {
   std::string problem;  // with the path, why it could not be read
 };
 
-// Any format that OpenCV reads; 16-bit images are scaled to 8 bits. Stored orientation (EXIF) is ignored: pixels stay
-// where the sensor has them. A truncated JPEG, which decoders fill up with grey, is a problem here.
+// PNG, JPEG, BMP, PBM to PPM, TIFF and WebP, told by how the file begins; 16-bit images are scaled to 8 bits. Stored
+// orientation (EXIF) is ignored: pixels stay where the sensor has them. A truncated JPEG, which decoders fill up with
+// grey, is a problem here.
 DecodedImage readGreyImage(const std::string& path);
 
 // Why an image of `size` cannot follow those of `expected`, naming both; empty where they are the same or none is

@@ -76,6 +76,7 @@ std::optional<std::int64_t> roundToInteger(const Decimal& decimal) {
     if (value > (kLargestTime - digit) / 10) return std::nullopt;
     value = value * 10 + digit;
   }
+  if (round_up && value == kLargestTime) return std::nullopt;
   if (round_up) ++value;
   return decimal.negative ? -value : value;
 }

@@ -10,6 +10,8 @@
 namespace edgeslam {
 namespace {
 
+constexpr double largest_position = 1e12;  // its square and cube are still far from infinity
+
 StampedPose parsePose(const std::string& path, const TextLine& line) {
   // EuRoC's files are comma separated, with the quaternion's w first; TUM's are blank separated, with it last.
   const bool is_euroc = line.text.find(',') != std::string::npos;
@@ -36,11 +38,17 @@ StampedPose parsePose(const std::string& path, const TextLine& line) {
     values[i] = *value;
   }
   stamped.world_T_camera.translation = {values[0], values[1], values[2]};
+  if (stamped.world_T_camera.translation.cwiseAbs().maxCoeff() > largest_position) {
+    throw InputError(placeInFile(path, line.number) + "the position is beyond 1e12");
+  }
   const Eigen::Quaterniond rotation = is_euroc ? Eigen::Quaterniond(values[3], values[4], values[5], values[6])
                                                : Eigen::Quaterniond(values[6], values[3], values[4], values[5]);
-  const double length = rotation.coeffs().stableNorm();
-  if (!(length > 1e-6)) throw InputError(placeInFile(path, line.number) + "the quaternion is zero");
-  stamped.world_T_camera.rotation.coeffs() = rotation.coeffs() / length;
+  if (!(rotation.coeffs().stableNorm() > 1e-6)) {
+    throw InputError(placeInFile(path, line.number) + "the quaternion is zero");
+  }
+  // The length itself may be beyond the largest number.
+  const Eigen::Vector4d bounded = rotation.coeffs() / rotation.coeffs().cwiseAbs().maxCoeff();
+  stamped.world_T_camera.rotation.coeffs() = bounded.normalized();
   return stamped;
 }
 

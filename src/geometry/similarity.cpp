@@ -2,6 +2,7 @@
 #include "geometry/similarity.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <stdexcept>
 
 namespace edgeslam {
@@ -38,7 +39,8 @@ Similarity alignHorn(const std::vector<Eigen::Vector3d>& from, const std::vector
   const Eigen::Matrix4d transform = Eigen::umeyama(source, target, with_scale);
   const Eigen::Matrix3d linear = transform.topLeftCorner<3, 3>();
   const double scale = with_scale ? std::cbrt(linear.determinant()) : 1.0;
-  if (!(scale > 0)) {  // the two sets are uncorrelated
+  // The two sets are uncorrelated, or one is so small that its variance is 0.
+  if (!(scale > 0 && std::isfinite(scale) && transform.allFinite())) {
     to_T_from.translation = target.rowwise().mean() - source.rowwise().mean();
     return to_T_from;
   }

@@ -99,5 +99,14 @@ TEST(ConfigurationCamera, WrongPosesAreRefused) {
   expectRefused(begin + "forward\n", "file.yaml:2: camera.body_T_camera: a 4x4 matrix");
 }
 
+TEST(ConfigurationCamera, APlaceOnTheRobotIsReadBackToTheLastBit) {
+  for (const char* quaternion : {"[0.1, 0.7, -0.3, 0.64]", "[0.31, -0.95, 0.01, 0.0362]", "[0.577, 0.577, 0.578, 0]"}) {
+    const Configuration first = configurationOf(
+        "camera: {body_T_camera: {translation: [0.1, 0, 1e-9], quaternion: " + std::string(quaternion) + "}}\n");
+    const Configuration again = configurationOf(formatConfiguration(first));
+    EXPECT_EQ(again.body_T_camera.rotation.coeffs(), first.body_T_camera.rotation.coeffs()) << quaternion;
+  }
+}
+
 }  // namespace
 }  // namespace edgeslam

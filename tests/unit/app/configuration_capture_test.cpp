@@ -64,6 +64,28 @@ TEST(ConfigurationCapture, WhatIsWrittenReadsBackAsTheSame) {
   EXPECT_EQ(captureOf(text).controls.size(), first.controls.size());
 }
 
+TEST(ConfigurationCapture, AControlIsSetOverWhatAnIncludedFileSays) {
+  const TemporaryFolder folder;
+  folder.write("base.yaml", "capture: {exposure: 8, gain: auto, controls: {brightness: 1, hue: 2}}\n");
+  const CameraOptions options =
+      readConfiguration(folder.write("robot.yaml", "include: base.yaml\ncapture: {exposure: 5, controls: {hue: 3}}\n"))
+          .capture;
+  EXPECT_EQ(options.controls.size(), 4U);
+  EXPECT_EQ(controlOf(options, "exposure"), "5");
+  EXPECT_EQ(controlOf(options, "gain"), "auto");
+  EXPECT_EQ(controlOf(options, "brightness"), "1");
+  EXPECT_EQ(controlOf(options, "hue"), "3");
+  const std::string text = formatCaptureSection(options);
+  EXPECT_EQ(formatCaptureSection(captureOf(text)), text);
+}
+
+TEST(ConfigurationCapture, ControlsWithCommasAndBracketsAreReadBack) {
+  const CameraOptions first = captureOf("capture: {controls: {'Exposure, Auto': 'a [b', 'x}': '{', '# y': ': z'}}\n");
+  const CameraOptions again = captureOf(formatCaptureSection(first));
+  ASSERT_EQ(again.controls.size(), 3U);
+  for (const ControlSetting& control : first.controls) EXPECT_EQ(controlOf(again, control.name), control.value);
+}
+
 TEST(ConfigurationCapture, WithoutTheSectionNothingIsAskedFor) {
   EXPECT_EQ(formatCaptureSection(captureOf("")), "");
   EXPECT_EQ(formatCaptureSection(captureOf("capture:\n")), "");

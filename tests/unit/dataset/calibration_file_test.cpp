@@ -114,6 +114,10 @@ TEST(CalibrationFile, ImpossibleValuesAreToldByLineAndKey) {
   expectRefused(replaced(kKalibr, "190.9", "-190.9"), "c.yaml:6", "fx");
   expectRefused(replaced(kEuroc, "458.654", ".nan"), "intrinsics", "finite");
   expectRefused(replaced(kRos, "[535.4", "[0"), "c.yaml", "fx");
+  // What a saved map would not take.
+  expectRefused(replaced(kOwn, "535.4", "1e13"), "c.yaml:4", "fx", "1e6");
+  expectRefused(replaced(kOwn, "539.2", "1e-13"), "c.yaml:5", "fy", "0.001");
+  expectRefused(replaced(kOwn, "0.045", "1e13"), "c.yaml:8", "distortion");
 }
 
 TEST(CalibrationFile, UnknownMissingAndRepeatedKeysAreToldWithWhatWasMeant) {

@@ -143,6 +143,8 @@ TEST(FrameSource, BadListsAreToldByLine) {
   expectRefused(folder, "rgb.txt:1", "nan", "time stamp");
   folder.write("rgb.txt", std::string("\0\xff\x01 \x02", 5));
   expectRefused(folder, "rgb.txt:1");
+  folder.write("rgb.txt", "1.5 rgb/\x1b[31m.png\n");
+  expectRefused(folder, "rgb.txt:1", "control characters");
 }
 
 TEST(FrameSource, ASingleBadFrameIsAProblemAndTheNextOneIsRead) {

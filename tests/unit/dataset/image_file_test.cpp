@@ -84,6 +84,21 @@ TEST(ImageFile, WhatIsNoImageIsAProblem) {
   EXPECT_NE(readGreyImage(folder.write("huge.pgm", "P5 2000000000 2000000000 255\n")).problem, "");
 }
 
+// OpenCV takes a file with DTED at byte 140 for a map's tile and has GDAL open it, which finds this format and would
+// follow it to other files and hosts.
+TEST(ImageFile, FormatsThatNameOtherFilesAreNoImages) {
+  const TemporaryFolder folder;
+  const std::string other = folder.write("other.pgm", "P5 4 4 255\n0123456789abcdef");
+  ASSERT_EQ(readGreyImage(other).problem, "");
+  std::string pointer = "<VRTDataset rasterXSize=\"4\" rasterYSize=\"4\"><!--";
+  pointer.resize(140, ' ');
+  pointer += "DTED--><VRTRasterBand dataType=\"Byte\" band=\"1\"><SimpleSource><SourceFilename>" + other +
+             "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>\n";
+  const DecodedImage image = readGreyImage(folder.write("frame.png", pointer));
+  EXPECT_TRUE(image.grey.empty());
+  EXPECT_NE(image.problem.find("frame.png: is no PNG, JPEG"), std::string::npos) << image.problem;
+}
+
 TEST(ImageFile, AnotherSizeIsToldWithBoth) {
   EXPECT_EQ(sizeProblem({640, 480}, {640, 480}, "x"), "");
   EXPECT_EQ(sizeProblem({640, 480}, {}, "x"), "");

@@ -57,6 +57,17 @@ TEST(TextFile, LinesKeepTheirNumbers) {
   EXPECT_EQ(lines[1].text, "three");
 }
 
+TEST(TextFile, AStampIsRoundedOnlyWithinItsRange) {
+  EXPECT_EQ(parseStamp("4000000000.0000000004"), 4000000000000000000);
+  EXPECT_EQ(parseStamp("4000000000.0000000005"), std::nullopt);
+}
+
+TEST(InputErrorMessage, IsOneLineWhateverAFileHolds) {
+  EXPECT_STREQ(InputError("f.txt:1: 'a\nb\x1b[31m\x7f' is no number: \xc3\xa9").what(),
+               "f.txt:1: 'a?b?[31m?' is no number: \xc3\xa9");
+  EXPECT_LT(std::string(InputError("f.txt: " + std::string(100'000, 'x')).what()).size(), 10'000U);
+}
+
 TEST(TextFile, MissingFilesAndFoldersAreToldApart) {
   const TemporaryFolder folder;
   expectInputError([&] { readTextLines(folder.path("none")); }, folder.path("none"), "no such file");

@@ -59,14 +59,17 @@ TEST(Trajectory, MistakesAreToldByLine) {
   expectInputError(read("x 0 0 0 0 0 0 1"), "t.txt:3", "time stamp");
   expectInputError(read("2 0 0 0 0 0 0 0"), "t.txt:3", "quaternion");
   expectInputError(read("2 0 0 0 0 0 0 1e-9"), "t.txt:3", "quaternion");
+  expectInputError(read("2 0 -1e13 0 0 0 0 1"), "t.txt:3", "beyond");
   expectInputError([&] { readTrajectory(folder.write("t.txt", "# nothing\n")); }, "t.txt", "no poses");
   expectInputError([&] { readTrajectory(folder.path("none.txt")); }, "none.txt", "no such file");
 }
 
 TEST(Trajectory, HugeQuaternionsStayUnit) {
   const TemporaryFolder folder;
-  const Trajectory read = readTrajectory(folder.write("t.txt", "1 0 0 0 0 0 1e300 1e300\n"));
-  EXPECT_NEAR(read[0].world_T_camera.rotation.norm(), 1, 1e-15);
+  for (const char* quaternion : {"0 0 1e300 1e300", "1.7e308 -1.7e308 1.7e308 1.7e308"}) {
+    const Trajectory read = readTrajectory(folder.write("t.txt", "1 0 0 0 " + std::string(quaternion) + "\n"));
+    EXPECT_NEAR(read[0].world_T_camera.rotation.norm(), 1, 1e-15) << quaternion;
+  }
 }
 
 }  // namespace

@@ -117,6 +117,16 @@ TEST(AlignHorn, DegenerateSetsStillFit) {
   }
 }
 
+TEST(AlignHorn, PointsTooCloseForTheirVarianceAreOnlyMoved) {
+  Random random(8);
+  const Points target = randomPoints(random, 10);
+  Points source;
+  for (const Eigen::Vector3d& point : target) source.emplace_back(1e-170 * point);
+  const Similarity found = alignHorn(source, target, true);
+  EXPECT_EQ(found.scale, 1);
+  for (const Eigen::Vector3d& point : source) EXPECT_TRUE((found * point).allFinite());
+}
+
 TEST(AlignHorn, RefusesSizesThatDifferOrAreZeroAndPointsThatAreNotFinite) {
   const Points one(1, Eigen::Vector3d::Zero()), two(2, Eigen::Vector3d::Zero());
   EXPECT_THROW(alignHorn({}, {}), std::invalid_argument);
