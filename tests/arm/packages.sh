@@ -10,7 +10,7 @@ for tool in mmdebstrap dpkg-shlibdeps help2man; do
   command -v "$tool" > /dev/null || { echo "skipped: no $tool"; exit 77; }
 done
 
-root=$(mktemp -d /tmp/edgeslam-arm-XXXXXX)
+root=$(mktemp -d --tmpdir edgeslam-arm-XXXXXX)
 trap 'rm -rf "$root"' EXIT
 fail() { echo "FAILED: $*"; exit 1; }
 
