@@ -231,7 +231,9 @@ Matrix6d Tracker::uncertaintyOfMapAt(const TrackedState& state) {
 // With the map's own uncertainty, of the last pose that was measured.
 Matrix6d Tracker::inWorld(const Matrix6d& covariance, double outlier_share) const {
   const double contradiction = 1 + squared(outlier_share / options_.doubling_outlier_share);
-  return squared(options_.correlation_factor) * contradiction * covariance + map_covariance_;
+  Matrix6d sum = squared(options_.correlation_factor) * contradiction * covariance + map_covariance_;
+  sum.diagonal().tail<3>().array() += squared(options_.calibration_sigma / meanFocalLength(camera_));
+  return sum;
 }
 
 void Tracker::report(bool mapping_busy, TrackingOutcome& outcome) {

@@ -53,6 +53,7 @@ struct TrackerOptions {
   // Map points that contradict the pose go together, too (something that moves, a torn image): this share of those in
   // view doubles the pose's variance in the world, twice the share makes it five times as large.
   double doubling_outlier_share = 0.2;
+  double calibration_sigma = 0.5;  // of directions, whatever is seen: no calibration is quite right [px]
 };
 
 enum class FrameState { initialising, tracking, predicted, lost };
