@@ -3,7 +3,9 @@
 
 usage: experiments_test.py PROGRAM SEQUENCE [test...]     SEQUENCE: a short recording in TUM layout with ground truth"""
 import json
+import math
 import os
+import random
 import re
 import stat
 import struct
@@ -216,6 +218,90 @@ class LoopClosing(WithFolder):
             ["fr2_desk", "70", "by its looks", "50.00", "X", "4.56", "4.56", "9.5", "1.75"],
             ["fr2_desk", "90", "by its points", "-", "-", "-", "-", "-", "-"],
             ["straight", "-", "-", "-", "-", "4.56", "4.56", "-", "-"]])
+
+
+class PoseUncertainty(WithFolder):
+    """Poses with errors of known size, in a map turned, scaled and shifted against the truth."""
+    SIGMA_M, SIGMA_RAD = 0.01, 0.004  # in map units, and as stated
+
+    def setUp(self):
+        super().setUp()
+        if subprocess.run(["/usr/bin/python3", "-c", "import numpy"], capture_output=True, check=False).returncode != 0:
+            self.skipTest("no numpy (Debian: python3-numpy)")
+
+    def write_run(self, name, times_stated, outlying=0):
+        """A run whose errors are `times_stated` times what it states; of the first `outlying` poses 100 times."""
+        noise = random.Random(1)
+        scale, turn, shift = 2.5, (math.sin(0.4), 0.0, 0.0, math.cos(0.4)), (3.0, -1.0, 2.0)
+        columns = [*("live_" + name for name in ("x", "y", "z", "qx", "qy", "qz", "qw")),
+                   *("sigma_" + name for name in ("x", "y", "z", "rx_rad", "ry_rad", "rz_rad"))]
+        truth, rows = [], [",".join(["time_s", "state", *columns])]
+        for i in range(600):
+            seconds = 0.1 * i
+            place = (math.sin(seconds), math.cos(1.3 * seconds), math.sin(0.7 * seconds))
+            rotation = product((0.0, math.sin(0.1 * seconds), 0.0, math.cos(0.1 * seconds)),
+                               (0.0, 0.0, math.sin(seconds), math.cos(seconds)))
+            size = times_stated * (100 if i < outlying else 1)
+            off = turned(rotation, [size * noise.gauss(0, self.SIGMA_M) for _ in range(3)])
+            small = [0.5 * size * noise.gauss(0, self.SIGMA_RAD) for _ in range(3)]
+            measured = product(rotation, (*small, 1.0))
+            pose = [place[k] + off[k] for k in range(3)] + list(measured)
+            sigmas = [self.SIGMA_M] * 3 + [self.SIGMA_RAD] * 3
+            rows.append(",".join(map(str, [seconds, "tracking", *pose, *sigmas])))
+            at = turned(turn, place)
+            true_place = [scale * at[k] + shift[k] for k in range(3)]
+            truth.append(" ".join(map(str, [seconds + 0.001, *true_place, *product(turn, rotation)])))
+        rows.insert(1, "0,initialising" + "," * 13)
+        rows.insert(2, "0.05,predicted," + ",".join(["9"] * 13))
+        self.write(name + "/frames.csv", "\n".join(rows) + "\n")
+        self.write(name + "_truth/groundtruth.txt", "# time pose\n" + "\n".join(truth) + "\n")
+        return self.path(name), self.path(name + "_truth")
+
+    def figures(self, *run):
+        outcome = Outcome("pose_uncertainty", *run)
+        self.assertEqual(outcome.code, 0, outcome.said)
+        return [[float(cell) for cell in row[1:]] for row in outcome.rows]
+
+    def test_errors_as_stated_give_one_and_ones_of_three_times_their_size_nine(self):
+        honest, sure = self.figures(*self.write_run("honest", 1), *self.write_run("sure", 3))
+        for poses, *figures in (honest, sure):
+            self.assertEqual(poses, 600)
+        for figure in honest[1::2]:
+            self.assertAlmostEqual(figure, 1, delta=0.15)
+        for beyond in honest[2::2]:
+            self.assertLess(beyond, 3)
+        for figure in sure[1::2]:
+            self.assertAlmostEqual(figure, 9, delta=1.4)
+        for beyond in sure[2::2]:
+            self.assertAlmostEqual(beyond, 74, delta=8)  # chi squared of three: P(x > 11.345 / 9)
+
+    def test_poses_that_are_far_off_do_not_spoil_the_others(self):
+        [figures] = self.figures(*self.write_run("outlying", 1, outlying=30))
+        self.assertAlmostEqual(figures[2], 6, delta=2)  # 5 % outlying and 1 % of the others
+        self.assertAlmostEqual(figures[4], 6, delta=2)
+
+    def test_bad_input_is_told(self):
+        run, truth = self.write_run("run", 1)
+        elsewhere = os.path.dirname(self.write("elsewhere/groundtruth.txt", "1e6 0 0 0 0 0 0 1\n1e7 0 0 0 0 0 0 1\n"))
+        broken = os.path.dirname(self.write("broken/groundtruth.txt", "1 2 three\n"))
+        for arguments in ([], [run], [run, self.path("nothing")], [truth, truth], [run, elsewhere], [run, broken]):
+            with self.subTest(arguments=arguments):
+                outcome = Outcome("pose_uncertainty", *arguments)
+                self.assertEqual((outcome.code, outcome.rows), (2, []))
+                self.assertIn("pose_uncertainty: ", outcome.said)
+                self.assertNotIn("Traceback", outcome.said)
+
+
+def product(a, b):
+    """Of quaternions x y z w."""
+    (ax, ay, az, aw), (bx, by, bz, bw) = a, b
+    return (aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz)
+
+
+def turned(rotation, vector):
+    x, y, z, w = rotation
+    return product(product(rotation, (*vector, 0.0)), (-x, -y, -z, w))[:3]
 
 
 def box(kind, content):
