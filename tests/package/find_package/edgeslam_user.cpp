@@ -63,7 +63,8 @@ void trackInThreads(const char* configuration) {
   slam.stop();
   const edgeslam::LiveCounters counters = slam.counters();
   expect(counters.handed_over == frame_count, "all frames handed over");
-  expect(counters.processed >= 1 && counters.processed + counters.passed_over == frame_count, "all frames accounted for");
+  expect(counters.processed >= 1 && counters.processed + counters.passed_over == frame_count,
+         "all frames accounted for");
   expect(received == counters.processed, "a pose for each frame that was processed");
 }
 
