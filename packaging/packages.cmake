@@ -1,11 +1,23 @@
-# Debian packages:  cmake --build BUILD --target manual_pages && cpack -G DEB --config BUILD/CPackConfig.cmake
+# Debian packages:  cmake --preset packages && cmake --build --preset packages && (cd build/packages && cpack)
+option(EDGESLAM_DEBUG_SYMBOLS "Packages of debug symbols (functions and lines), too; objects take 30 times the space" OFF)
+if(EDGESLAM_DEBUG_SYMBOLS)
+  target_compile_options(edgeslam_settings INTERFACE -g1 -fdebug-prefix-map=${CMAKE_SOURCE_DIR}=/usr/src/edgeslam)
+endif()
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME edgeslam)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "Edge SLAM maintainers <maintainers@users.noreply.h-seed-3b6aca39.example>")
 set(CPACK_PACKAGE_VENDOR "Edge SLAM")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_STRIP_FILES ON)
+if(EDGESLAM_DEBUG_SYMBOLS)
+  set(CPACK_DEBIAN_EDGESLAM_DEBUGINFO_PACKAGE ON)  # strips, too
+  set(CPACK_DEBIAN_LIBEDGESLAM0_DEBUGINFO_PACKAGE ON)
+  set(CPACK_POST_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/packaging/name_debug_packages.cmake)
+else()
+  set(CPACK_STRIP_FILES ON)
+endif()
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
   WORLD_READ WORLD_EXECUTE)
 set(CPACK_COMPONENTS_ALL edgeslam libedgeslam0 libedgeslam-dev)
