@@ -19,7 +19,7 @@ struct MapUncertaintyOptions {
   // What a way adds whatever is seen on it, for calibration and rolling shutters are never quite right: standard
   // deviations after a way as long as the scene is deep, or a turn of 1 rad, growing with the root of the way.
   double position_walk = 0.008;  // share of the scene's depth
-  double rotation_walk = 0.01;  // [rad]
+  double rotation_walk = 0.01;   // [rad]
   double scale_walk = 0.03;
 };
 
