@@ -115,8 +115,11 @@ void LockstepRun::remember(std::optional<MapUpdate> update) {
 
 void LockstepRun::draw(const cv::Mat& grey, const FrameRecord& record) {
   const Tracker& tracker = tracking_.tracker();
+  const EdgeMap no_edges;
+  const EdgeMap* edges = tracker.latestEdges();
   std::vector<DrawnTrack> tracks;
   for (const Track& track : tracker.tracks()) {
+    if (!tracker.latestIsTracked()) break;  // they are of an earlier frame
     DrawnTrack drawn;
     drawn.pixel = track.pixel;
     drawn.keyframe_pixel = track.last_keyframe_pixel;
@@ -127,7 +130,7 @@ void LockstepRun::draw(const cv::Mat& grey, const FrameRecord& record) {
   }
   const std::string caption = "frame " + std::to_string(record.index) + ": " + stateName(record.state) +
                               (record.reason.empty() ? "" : " (" + record.reason + ")");
-  record_.add({record.index, drawFrame(grey, tracker.edges(), tracks, caption)});
+  record_.add({record.index, drawFrame(grey, edges ? *edges : no_edges, tracks, caption)});
 }
 
 void LockstepRun::settle() {

@@ -112,6 +112,10 @@ class Viewer(unittest.TestCase):
                     opened.prefer(scheme)
                     wide = opened.run("return document.documentElement.scrollWidth - window.innerWidth;")
                     self.assertLessEqual(wide, 0, f"{width} px, {scheme}: the page is wider than its window")
+                    cut = opened.run("""return [...document.querySelectorAll('figcaption b')].filter((value) =>
+                        value.getBoundingClientRect().right > value.closest('figure').getBoundingClientRect().right + 0.5 ||
+                        value.getBoundingClientRect().left < value.previousElementSibling.getBoundingClientRect().right).length;""")
+                    self.assertEqual(cut, 0, f"{width} px: a graph's value is cut off, or lies over its name")
                     unnamed = opened.run("""return [...document.querySelectorAll('button, input, canvas')].filter((control) =>
                         !control.getAttribute('aria-label') && !control.closest('label') && !control.textContent.trim()).length;""")
                     self.assertEqual(unnamed, 0, "every control has a name")

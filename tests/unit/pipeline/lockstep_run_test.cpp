@@ -101,6 +101,31 @@ TEST(LockstepRun, TheSameFramesGiveTheSameRunToTheLastBit) {
   }
 }
 
+// While the camera has not been found yet there is no frame with a pose to draw.
+TEST(LockstepRun, FramesAreDrawnAlsoBeforeTheCameraIsFoundInASavedMap) {
+  const Recording& made = recording();
+  LockstepRun first(made.sequence.camera, Settings(), frame_count, 0);
+  for (int i = 0; i < frame_count; ++i) {
+    first.process(i, made.sequence.time(i), made.images[static_cast<std::size_t>(i)]);
+  }
+  first.settle();
+  ASSERT_FALSE(first.map().keyframes.empty());
+
+  LockstepRun second(made.sequence.camera, Settings(), 10, 10);
+  second.goOnWith(first.map());
+  for (int i = 0; i < 10; ++i) {
+    const FrameRecord& record = second.process(i, made.sequence.time(i), made.images[static_cast<std::size_t>(i)]);
+    if (i == 0) {
+      EXPECT_EQ(record.state, TrackingState::lost);
+    }
+  }
+  const RunResult result = second.finish();
+  ASSERT_EQ(result.drawings.size(), 10U);
+  cv::Mat channels[3];
+  cv::split(result.drawings[0].image, channels);
+  EXPECT_GT(cv::countNonZero(channels[0] != channels[1]), 500) << "its edges are coloured";
+}
+
 TEST(LockstepRun, WhatARunLeavesFitsTogether) {
   std::vector<FrameRecord> live;
   const RunResult result = run(Settings(), {}, &live);
