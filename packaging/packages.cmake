@@ -45,9 +45,9 @@ if(CMAKE_CROSSCOMPILING)
 endif()
 
 set(CPACK_COMPONENT_EDGESLAM_DESCRIPTION "monocular SLAM on image edges, as a service over LCM
-Edge SLAM tells a robot with one camera where it is, at every frame, also in front
-of bare walls: it follows points on image edges, builds a 3D map of them, and
-publishes a pose with its uncertainty over LCM.
+Edge SLAM tells a robot with one camera where it is, at every frame, also in
+front of bare walls: it follows points on image edges, builds a 3D map of them,
+and publishes a pose with its uncertainty over LCM.
 
 This package has the command, the service and its configuration.")
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_NAME edgeslam)
@@ -59,9 +59,9 @@ set(CPACK_DEBIAN_EDGESLAM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/de
   ${CMAKE_SOURCE_DIR}/packaging/debian/postrm)
 
 set(CPACK_COMPONENT_LIBEDGESLAM0_DESCRIPTION "monocular SLAM on image edges, shared library
-Edge SLAM tells a robot with one camera where it is, at every frame, also in front
-of bare walls: it follows points on image edges, builds a 3D map of them, and
-gives a pose with its uncertainty.
+Edge SLAM tells a robot with one camera where it is, at every frame, also in
+front of bare walls: it follows points on image edges, builds a 3D map of them,
+and gives a pose with its uncertainty.
 
 This package has the library that programs use.")
 set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_NAME libedgeslam0)
@@ -69,9 +69,9 @@ set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/triggers)
 
 set(CPACK_COMPONENT_LIBEDGESLAM-DEV_DESCRIPTION "monocular SLAM on image edges, development files
-Edge SLAM tells a robot with one camera where it is, at every frame, also in front
-of bare walls: it follows points on image edges, builds a 3D map of them, and
-gives a pose with its uncertainty.
+Edge SLAM tells a robot with one camera where it is, at every frame, also in
+front of bare walls: it follows points on image edges, builds a 3D map of them,
+and gives a pose with its uncertainty.
 
 This package has the headers and the CMake package to build programs with.")
 set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_NAME libedgeslam-dev)
