@@ -57,6 +57,7 @@ class BackgroundProcess {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   void send(int signal) const { kill(process_, signal); }
+  pid_t id() const { return process_; }
   void end(int signal) {
     if (process_ <= 0) return;
     kill(process_, signal);
