@@ -173,15 +173,6 @@ namespace edgeslam {
 void setFaults(const FaultPlan& plan) { take(plan); }
 long faultSteps() { return steps; }
 
-std::vector<std::string> faultEnvironment(const std::string& library, const FaultPlan& plan) {
-  return {"LD_PRELOAD=" + library,
-          "EDGESLAM_FAULT_UNDER=" + plan.under,
-          "EDGESLAM_FAULT=" + std::to_string(static_cast<int>(plan.fault)),
-          "EDGESLAM_FAULT_FIRST=" + std::to_string(plan.first),
-          "EDGESLAM_FAULT_WHILE=" + plan.while_exists,
-          "EDGESLAM_FAULT_LOG=" + plan.log};
-}
-
 }  // namespace edgeslam
 
 #define EDGESLAM_REPLACES extern "C" __attribute__((visibility("default")))

@@ -65,22 +65,22 @@ class PowerCut : public TestInMemory {
     long step = 1;
     for (bool ended = false; !ended; ++step) {
       for (const Fault fault : {Fault::cut_before, Fault::cut_within}) {
+        const TemporaryFolder room;
+        const std::string disk = room.path("disk"), before = room.path("before"), after = room.path("after");
+        fs::create_directory(disk);
+        prepare(disk);
+        fs::copy(disk, before, fs::copy_options::recursive);
+        const FaultPlan plan{disk, fault, step, "", room.path("log")};
+        const CutRun run = runCut(plan, disk, work);
+        ended = run.ended;
+        fs::rename(disk, after);
         for (const Loss loss : {Loss::nothing, Loss::content, Loss::all_it_could}) {
           SCOPED_TRACE("step " + std::to_string(step) + (fault == Fault::cut_before ? " before" : " within") +
                        ", loss " + std::to_string(static_cast<int>(loss)));
-          const TemporaryFolder room;
-          fs::create_directory(room.path("disk"));
-          prepare(room.path("disk"));
-          fs::copy(room.path("disk"), room.path("before"), fs::copy_options::recursive);
-          FaultPlan plan;
-          plan.under = room.path("disk");
-          plan.fault = fault;
-          plan.first = step;
-          plan.log = room.path("log");
-          const CutRun run = runCut(plan, room.path("disk"), work);
-          ended = run.ended;
-          lose(loss, room.path("disk"), room.path("log"), room.path("before"));
-          check(room.path("disk"), run.confirmed);
+          fs::remove_all(disk);
+          fs::copy(after, disk, fs::copy_options::recursive);
+          lose(loss, disk, plan.log, before);
+          check(disk, run.confirmed);
           if (HasFailure()) return step;
         }
       }

@@ -65,6 +65,7 @@ class BackgroundProcess {
     return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
   }
   void send(int signal) const { kill(process_, signal); }
+  pid_t id() const { return process_; }
   void end(int signal) {
     if (process_ <= 0) return;
     kill(process_, signal);
