@@ -56,7 +56,8 @@ void requireMapCanBeSaved(const std::string& path) {
   try {
     const PendingFile trial(path, "");
   } catch (const InputError& problem) {
-    throw InputError(std::string("the map cannot be saved there: ") + problem.what());
+    const std::string reason = std::string(problem.what()).substr(path.size() + std::string(": ").size());
+    throw InputError(path + ": the map cannot be saved there: " + reason);
   }
 }
 
