@@ -59,6 +59,7 @@ class Connection : public ViewStream, public std::enable_shared_from_this<Connec
   void refuse(const Refusal& refusal, bool is_page);
 
   void offer(ViewMessage kind, const SharedMessage& message) override;
+  void offer(const SharedMap& map) override;
   bool wantsPicture() const override { return !waiting_[indexOf(ViewMessage::picture)]; }
 
  private:
@@ -72,6 +73,7 @@ class Connection : public ViewStream, public std::enable_shared_from_this<Connec
   void beginStream();
   void watchForEnd();
   void sendNext();
+  SharedMessage nextMessage();
   void end();
 
   beast::tcp_stream stream_;
@@ -86,6 +88,7 @@ class Connection : public ViewStream, public std::enable_shared_from_this<Connec
   http::response<http::empty_body> head_;
   std::optional<http::response_serializer<http::empty_body>> head_serializer_;
   std::array<SharedMessage, view_messages> waiting_;
+  SharedMap waiting_map_, sent_map_;
   std::string frame_;  // being sent: length and message
   bool is_sending_ = true, has_ended_ = false;
   std::array<char, 256> unwanted_{};
@@ -227,16 +230,27 @@ void Connection::offer(ViewMessage kind, const SharedMessage& message) {
   if (!is_sending_) sendNext();
 }
 
+void Connection::offer(const SharedMap& map) {
+  waiting_map_ = map;
+  if (!is_sending_) sendNext();
+}
+
 // In the order of their kinds: pictures, which are the largest, last.
+SharedMessage Connection::nextMessage() {
+  for (std::size_t i = 0; i < waiting_.size(); ++i) {
+    if (waiting_[i]) return std::exchange(waiting_[i], nullptr);
+    if (i != indexOf(ViewMessage::map) || !waiting_map_) continue;
+    const auto message = std::make_shared<const std::string>(mapMessage(*waiting_map_, sent_map_.get()));
+    sent_map_ = std::exchange(waiting_map_, nullptr);
+    return message;
+  }
+  return nullptr;
+}
+
 void Connection::sendNext() {
   deadline_.cancel();
   if (has_ended_) return;
-  SharedMessage message;
-  for (SharedMessage& waiting : waiting_) {
-    if (!waiting) continue;
-    message = std::exchange(waiting, nullptr);
-    break;
-  }
+  const SharedMessage message = nextMessage();
   if (!message) return;
   is_sending_ = true;
   frame_.clear();

@@ -8,6 +8,7 @@
 
 #include "drivers/lcm/commands.h"
 #include "drivers/viewer/view_messages.h"
+#include "map/map.h"
 #include "pipeline/channel.h"
 #include "pipeline/frame_look.h"
 

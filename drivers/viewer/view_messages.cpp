@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "drivers/lcm/messages.h"
-#include "pipeline/map_records.h"
+#include "drivers/viewer/message_bytes.h"
 
 namespace edgeslam {
 namespace {
@@ -16,32 +14,6 @@ using Json = nlohmann::json;
 
 constexpr int jpeg_quality = 70;
 constexpr float steps_a_pixel = 16;
-
-std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-std::string begin(ViewMessage kind) { return std::string(1, static_cast<char>(kind)); }
-
-template <typename Whole>
-void append(std::string& message, Whole number) {
-  for (std::size_t i = 0; i < sizeof(Whole); ++i) {
-    message.push_back(static_cast<char>(static_cast<std::uint64_t>(number) >> (8 * i) & 0xFF));
-  }
-}
-
-void appendFloat(std::string& message, double value) {
-  const auto number = static_cast<float>(value);
-  std::uint32_t bits = 0;
-  static_assert(sizeof(bits) == sizeof(number));
-  std::memcpy(&bits, &number, sizeof(bits));
-  append(message, bits);
-}
-
-std::string beginBinary(ViewMessage kind, const Json& description) {
-  const std::string text = textOf(description);
-  std::string message = begin(kind);
-  append(message, static_cast<std::uint32_t>(text.size()));
-  return message + text;
-}
 
 // 65535 is kept for the end of a line.
 std::uint16_t coordinate(float pixel) {
@@ -56,10 +28,6 @@ void appendPixel(std::string& message, const Eigen::Vector2f& pixel) {
 
 std::int8_t share(float value) {
   return static_cast<std::int8_t>(std::clamp(std::isfinite(value) ? 127 * value : 0.0F, -127.0F, 127.0F));
-}
-
-std::uint8_t percent(float ratio) {
-  return static_cast<std::uint8_t>(std::isfinite(ratio) ? std::clamp(100 * ratio, 0.0F, 255.0F) : 255.0F);
 }
 
 void appendTrack(std::string& message, const SeenTrack& track) {
@@ -131,29 +99,20 @@ Json statusOf(const PublisherStatus& status) {
           {"scale_problem", status.scale_problem}};
 }
 
-// Every so manieth record, so that no more than `most` are left.
-template <typename Record>
-std::vector<Record> thinned(std::vector<Record> records, std::size_t most) {
-  if (records.size() <= most) return records;
-  std::vector<Record> kept;
-  for (std::size_t i = 0; i < most; ++i) kept.push_back(records[i * records.size() / most]);
-  return kept;
-}
-
 }  // namespace
 
 std::string helloMessage(const ViewerSetup& setup) {
   const Camera& camera = setup.camera;
-  return begin(ViewMessage::hello) + textOf({{"version", setup.version},
-                                             {"source", setup.source},
-                                             {"commands", setup.commands},
-                                             {"camera",
-                                              {{"width", camera.width},
-                                               {"height", camera.height},
-                                               {"fx", camera.fx},
-                                               {"fy", camera.fy},
-                                               {"cx", camera.cx},
-                                               {"cy", camera.cy}}}});
+  return beginMessage(ViewMessage::hello) + textOf({{"version", setup.version},
+                                                    {"source", setup.source},
+                                                    {"commands", setup.commands},
+                                                    {"camera",
+                                                     {{"width", camera.width},
+                                                      {"height", camera.height},
+                                                      {"fx", camera.fx},
+                                                      {"fy", camera.fy},
+                                                      {"cx", camera.cx},
+                                                      {"cy", camera.cy}}}});
 }
 
 std::string stateMessage(const ViewedState& state, const std::vector<FrameSample>& samples) {
@@ -171,7 +130,7 @@ std::string stateMessage(const ViewedState& state, const std::vector<FrameSample
             {"lcm_problem", state.lcm_problem},
             {"note", state.note}};
   if (state.has_frame) json["frame"] = frameOf(state.frame);
-  return begin(ViewMessage::state) + textOf(json);
+  return beginMessage(ViewMessage::state) + textOf(json);
 }
 
 std::string pictureMessage(const FrameLook& look) {
@@ -192,39 +151,6 @@ std::string pictureMessage(const FrameLook& look) {
   message.append(jpeg.begin(), jpeg.end());
   for (const SeenTrack& track : look.tracks) appendTrack(message, track);
   return message + edges;
-}
-
-std::string mapMessage(const Map& map, const Camera& camera) {
-  std::vector<MapPointRecord> points = mapPointRecords(map, camera);
-  const std::size_t all = points.size();
-  points.erase(std::remove_if(points.begin(), points.end(),
-                              [](const MapPointRecord& point) { return !point.position.cast<float>().allFinite(); }),
-               points.end());
-  points = thinned(std::move(points), most_viewed_points);
-  std::vector<KeyframeRecord> keyframes;
-  for (const KeyframeRecord& keyframe : keyframeRecords(map)) {
-    if (isFinite(keyframe.world_T_camera)) keyframes.push_back(keyframe);
-  }
-  const std::size_t all_keyframes = keyframes.size();
-  keyframes = thinned(std::move(keyframes), most_viewed_keyframes);
-  std::string message = beginBinary(ViewMessage::map, {{"points", points.size()},
-                                                       {"points_in_map", all},
-                                                       {"keyframes", keyframes.size()},
-                                                       {"keyframes_in_map", all_keyframes}});
-  for (const MapPointRecord& point : points) {
-    for (int axis = 0; axis < 3; ++axis) appendFloat(message, point.position[axis]);
-  }
-  for (const MapPointRecord& point : points) append(message, static_cast<std::uint8_t>(point.grey));
-  for (const MapPointRecord& point : points) append(message, percent(point.depth_sigma_ratio));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    append(message, static_cast<std::uint8_t>(i > 0 && points[i].chain == points[i - 1].chain));
-  }
-  for (const KeyframeRecord& keyframe : keyframes) {
-    const Pose& pose = keyframe.world_T_camera;
-    for (int axis = 0; axis < 3; ++axis) appendFloat(message, pose.translation[axis]);
-    for (int i = 0; i < 4; ++i) appendFloat(message, pose.rotation.coeffs()[i]);
-  }
-  return message;
 }
 
 }  // namespace edgeslam

@@ -4,9 +4,12 @@
 //   picture: the JPEG; tracks of 12 bytes (x, y, x in the latest keyframe, y there: uint16 [1/16 px]; the edge's normal
 //            x, y: int8 [1/127]; flags: 1 corner, 2 mapped, 4 outlier; 0); edge points of 4 bytes (x, y: uint16
 //            [1/16 px]; 65535, 65535: the next point begins another line).
-//   map:     positions (3 float32 a point, world [map units]), grey values (uint8), standard deviations of the
-//            depth (uint8 [%]), joins (uint8, 1: a line comes from the point before), keyframes of 7 float32 (position;
-//            rotation x, y, z, w; world_T_camera).
+//   map:     what changed since the map sent before, whose number is `after` (0: nothing was sent yet). Points and
+//            keyframes are lists, put together of runs: pairs of uint32, where the run begins in the list before
+//            (0xffffffff: it is of the new ones) and its length. First the points' runs, then the keyframes'; then
+//            what is new: positions (3 float32 a point, world [map units]), keyframes of 7 float32 (position; rotation
+//            x, y, z, w; world_T_camera), and of each point grey value (uint8), standard deviation of the depth (uint8
+//            [%]), join (uint8, 1: a line comes from the point before). See viewed_map.h.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +19,6 @@
 #include "drivers/lcm/body_pose.h"
 #include "drivers/lcm/status_message.h"
 #include "geometry/camera.h"
-#include "map/map.h"
 #include "pipeline/frame_look.h"
 
 namespace edgeslam {
@@ -59,12 +61,6 @@ std::string stateMessage(const ViewedState& state, const std::vector<FrameSample
 // whole one. Empty where the look has no image.
 std::string pictureMessage(const FrameLook& look);
 
-// At most most_viewed_points of the map's points, spread evenly, and most_viewed_keyframes; points that are not finite
-// are left out.
-std::string mapMessage(const Map& map, const Camera& camera);
-
 constexpr int most_picture_width = 960;  // [px]
-constexpr std::size_t most_viewed_points = 20000;
-constexpr std::size_t most_viewed_keyframes = 2000;
 
 }  // namespace edgeslam

@@ -78,6 +78,7 @@ bool ViewServer::join(ViewStream& stream) {
   for (std::size_t i = 0; i < latest_.size(); ++i) {
     if (latest_[i]) stream.offer(static_cast<ViewMessage>(i + 1), latest_[i]);
   }
+  if (latest_map_) stream.offer(latest_map_);
   feed_.is_watched.store(true, std::memory_order_release);
   feed_.looks.ask();
   wake();
@@ -162,7 +163,10 @@ void ViewServer::lookAtState() {
 void ViewServer::lookAtMap() {
   if (!feed_.maps.take()) return;
   const std::shared_ptr<const Map> map = std::exchange(feed_.maps.reading(), nullptr);
-  if (map) offer(ViewMessage::map, mapMessage(*map, setup_.camera));
+  if (!map) return;
+  const std::int64_t number = latest_map_ ? latest_map_->number + 1 : 1;
+  latest_map_ = std::make_shared<const ViewedMap>(viewedMap(*map, setup_.camera, number));
+  for (ViewStream* stream : streams_) stream->offer(latest_map_);
 }
 
 // A picture is encoded where someone is ready for it.

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "drivers/viewer/view_feed.h"
+#include "drivers/viewer/viewed_map.h"
 #include "drivers/viewer/viewer_options.h"
 
 namespace edgeslam {
@@ -31,6 +32,8 @@ class ViewStream {
  public:
   virtual ~ViewStream() = default;
   virtual void offer(ViewMessage kind, const SharedMessage& message) = 0;
+  // Likewise the map, of which it takes what it does not have yet.
+  virtual void offer(const SharedMap& map) = 0;
   // False while the latest picture still waits to be sent: it takes none now.
   virtual bool wantsPicture() const = 0;
 };
@@ -95,7 +98,8 @@ class ViewServer {
   std::set<ViewStream*> streams_;
   std::map<std::int64_t, Asked> asked_;  // by the command's number
   std::int64_t commands_ = 0;
-  std::array<SharedMessage, view_messages> latest_;  // by kind, for those who join
+  std::array<SharedMessage, view_messages> latest_;  // by kind, for those who join; none for the map
+  SharedMap latest_map_;                             // likewise
   Clock::time_point state_told_{};
   bool is_awake_ = false;
 

@@ -11,6 +11,7 @@
 #include "drivers/viewer/view_messages.h"
 #include "drivers/viewer/viewer_options.h"
 #include "edgeslam/input_error.h"
+#include "map/map.h"
 
 namespace edgeslam {
 

@@ -3,16 +3,40 @@
 
 const MOST_CERTAIN = 25; // [%] of the depth: points that are known worse are drawn on request only
 const TAIL_SECONDS = 10;
+const NEW = 0xffffffff; // of a run of the map: not in the one before
 const FRUSTUM_LINES = [[0, 1], [0, 2], [0, 3], [0, 4], [1, 2], [2, 3], [3, 4], [4, 1]];
 
-function readMap(description, rest) {
+// A list of `count` items of `size` numbers each, put together of items of the list before and of new ones. `runs`: pairs of
+// where a run begins in the list before (NEW: it is of the new ones) and its length.
+function putTogether(runs, count, size, before, added) {
+  const whole = new added.constructor(size * count);
+  let at = 0;
+  let taken = 0;
+  for (let i = 0; i < runs.length; i += 2) {
+    const [from, length] = [runs[i], runs[i + 1]];
+    const source = from === NEW ? added.subarray(size * taken, size * (taken + length)) : before.subarray(size * from, size * (from + length));
+    if (source.length !== size * length) throw new RangeError('a map that does not fit the one before');
+    whole.set(source, size * at);
+    at += length;
+    if (from === NEW) taken += length;
+  }
+  return whole;
+}
+
+// `before`: the map read last, of which the message says what changed; or null.
+function readMap(description, rest, before) {
+  if (description.after !== 0 && description.after !== (before && before.number)) throw new RangeError('a map that follows another one');
+  const known = description.after !== 0 ? before : { positions: [], greys: [], sigmas: [], joins: [], keyframes: [] };
+  let at = 0;
+  const take = (Kind, length) => { at += length * Kind.BYTES_PER_ELEMENT; return new Kind(rest.buffer.slice(at - length * Kind.BYTES_PER_ELEMENT, at)); };
+  const runs = take(Uint32Array, 2 * description.point_runs);
+  const keyframeRuns = take(Uint32Array, 2 * description.keyframe_runs);
   const count = description.points;
-  const positions = new Float32Array(rest.buffer.slice(0, 12 * count));
-  const greys = rest.subarray(12 * count, 13 * count);
-  const sigmas = rest.subarray(13 * count, 14 * count);
-  const joins = rest.subarray(14 * count, 15 * count);
-  const keyframes = new Float32Array(rest.buffer.slice(15 * count, 15 * count + 28 * description.keyframes));
-  return { count, positions, greys, sigmas, joins, keyframes };
+  const added = description.new_points;
+  const positions = putTogether(runs, count, 3, known.positions, take(Float32Array, 3 * added));
+  const keyframes = putTogether(keyframeRuns, description.keyframes, 7, known.keyframes, take(Float32Array, 7 * description.new_keyframes));
+  const [greys, sigmas, joins] = ['greys', 'sigmas', 'joins'].map((name) => putTogether(runs, count, 1, known[name], take(Uint8Array, added)));
+  return { number: description.number, count, positions, greys, sigmas, joins, keyframes };
 }
 
 function quantile(values, share) {
@@ -86,7 +110,7 @@ class MapView {
 
   show(description, rest) {
     if (!this.renderer) return;
-    this.map = readMap(description, rest);
+    this.map = readMap(description, rest, this.map);
     this.host.querySelector('.empty').hidden = this.map.count > 0;
     if (this.map.count === 0) this.touched = false;
     this.measure();

@@ -25,6 +25,7 @@ PROGRAM, REPOSITORY, RECORDING, BOARD_FRAMES = (pathlib.Path(path).resolve() for
 LONGEST_S = 400  # a busy machine
 # Messages go to a file and come from one: no network is needed.
 ENVIRONMENT = {**os.environ, "LCM_DEFAULT_URL": "file://sent.log?mode=w"}
+HEARD = "file://heard.log?speed=0"
 
 
 def pages():
@@ -148,16 +149,18 @@ class DocumentedCommands(unittest.TestCase):
     def run_until(self, words, said, folder):
         with open(folder / "said.txt", "w+", encoding="utf-8") as file, subprocess.Popen(
                 [PROGRAM, *words[1:]], cwd=folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file,
-                env={**ENVIRONMENT, "LCM_DEFAULT_URL": "file://heard.log?speed=0"}) as process:
+                env={**ENVIRONMENT, "LCM_DEFAULT_URL": HEARD}) as process:
+            def output():
+                return pathlib.Path(file.name).read_text(encoding="utf-8")
             try:
                 end = time.monotonic() + LONGEST_S
-                while said not in pathlib.Path(file.name).read_text(encoding="utf-8"):
-                    if process.poll() is not None or time.monotonic() > end:
-                        self.fail(f"{words}: exit code {process.poll()}, it did not say {said!r} but "
-                                  + pathlib.Path(file.name).read_text(encoding="utf-8"))
+                while said not in output() and process.poll() is None and time.monotonic() < end:
                     time.sleep(0.05)
                 process.send_signal(signal.SIGINT)
-                self.assertIn(process.wait(timeout=30), (0, -signal.SIGINT))
+                exit_code = process.wait(timeout=LONGEST_S)
+                self.assertIn(said, output(), f"{words}: exit code {exit_code}")
+                came_to_its_end = f"{HEARD} ended" in output()  # the file of messages: before Ctrl-C came
+                self.assertIn(exit_code, (0, -signal.SIGINT, *([2] if came_to_its_end else [])), output())
             finally:
                 process.kill()
 

@@ -78,45 +78,6 @@ TEST(ViewMessages, AWideImageIsSentSmaller) {
   EXPECT_EQ(pictureMessage(FrameLook()), "") << "before the first frame";
 }
 
-TEST(ViewMessages, AMapHasItsPointsAndKeyframes) {
-  SavedMap saved = test::madeMap(64, 48);
-  for (auto& [id, point] : saved.map.points) point.inverse_depth = std::abs(point.inverse_depth) + 0.1;
-  const TakenApart map = takenApart(mapMessage(saved.map, saved.camera), ViewMessage::map);
-  const std::size_t points = map.description["points"], keyframes = map.description["keyframes"];
-  EXPECT_EQ(points, saved.map.points.size());
-  EXPECT_EQ(keyframes, 4U);
-  ASSERT_EQ(map.rest.size(), 15 * points + 28 * keyframes);
-  for (std::size_t i = 0; i < 3 * points; ++i) EXPECT_TRUE(std::isfinite(numberAt<float>(map.rest, 4 * i)));
-  EXPECT_EQ(map.rest[14 * points], 0) << "nothing comes before the first point";
-  const Pose& first = saved.map.keyframes.atPlace(0).world_T_camera;
-  EXPECT_FLOAT_EQ(numberAt<float>(map.rest, 15 * points), static_cast<float>(first.translation.x()));
-  EXPECT_FLOAT_EQ(numberAt<float>(map.rest, 15 * points + 24), static_cast<float>(first.rotation.w()));
-}
-
-TEST(ViewMessages, AnEmptyMapAndAHugeOneAreBounded) {
-  const TakenApart empty = takenApart(mapMessage(Map(), Camera()), ViewMessage::map);
-  EXPECT_EQ(empty.description["points"], 0);
-  EXPECT_TRUE(empty.rest.empty());
-
-  SavedMap saved = test::madeMap(64, 48);
-  MapPoint point = saved.map.points.begin()->second;
-  point.inverse_depth = 0.5;
-  saved.map.points.clear();
-  for (PointId id = 0; id < 45000; ++id) {
-    point.id = id;
-    point.chain = static_cast<int>(id / 30);
-    point.inverse_depth = id % 1000 == 0 ? 0 : 0.5;  // infinitely far
-    saved.map.points[id] = point;
-  }
-  const std::string message = mapMessage(saved.map, saved.camera);
-  const TakenApart map = takenApart(message, ViewMessage::map);
-  EXPECT_EQ(map.description["points"], most_viewed_points);
-  EXPECT_EQ(map.description["points_in_map"], 45000);
-  for (std::size_t i = 0; i < 3 * most_viewed_points; ++i) {
-    ASSERT_TRUE(std::isfinite(numberAt<float>(map.rest, 4 * i))) << i;
-  }
-}
-
 TEST(ViewMessages, TheStateIsJsonWithFiniteNumbers) {
   ViewedState state;
   const std::string none = stateMessage(state, {});

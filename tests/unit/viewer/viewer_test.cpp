@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <thread>
 
@@ -208,12 +209,21 @@ TEST(Viewer, AClientThatDoesNotReadIsDroppedAndHoldsNobodyUp) {
   Map map = test::madeMap(64, 48).map;
   MapPoint point = map.points.begin()->second;
   point.inverse_depth = 0.5;
-  for (PointId id = 0; id < 20000; ++id) map.points[id] = point;
-  const auto large = std::make_shared<const Map>(map);
+  // Two that have no point in common: each is sent whole.
+  std::array<std::shared_ptr<const Map>, 2> large;
+  for (std::size_t i = 0; i < large.size(); ++i) {
+    for (PointId id = 0; id < 20000; ++id) {
+      point.id = id;
+      point.inverse_depth = 0.5 + static_cast<double>(i);
+      map.points[id] = point;
+    }
+    large[i] = std::make_shared<const Map>(map);
+  }
+  std::size_t shown = 0;
   std::chrono::duration<double> longest{0};
   EXPECT_TRUE(comesTrue([&] {
     const auto start = std::chrono::steady_clock::now();
-    viewer.map(large);
+    viewer.map(large[shown++ % 2]);
     viewer.frame(measuredFrame(1, Pose()));
     longest = std::max<std::chrono::duration<double>>(longest, std::chrono::steady_clock::now() - start);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
