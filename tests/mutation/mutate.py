@@ -85,6 +85,7 @@ def main():
     parser.add_argument('--jobs', type=int, default=2)
     parser.add_argument('--report', help='Markdown file for the survivors')
     options = parser.parse_args()
+    options.build = str(pathlib.Path(options.build).resolve())
     names = options.only.split(',') if options.only else CORE
     for stage in sorted({name.split('/')[0] for name in names}):
         outcome, said = build_and_test(options.build, stage, options.jobs)
