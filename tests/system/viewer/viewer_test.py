@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
@@ -70,6 +71,12 @@ def state(opened):
     return opened.run("return document.getElementById('state').dataset.state;")
 
 
+def whole_map(opened):
+    """Its number and all that the page has of it."""
+    return opened.run("""return map.map && [map.map.number, JSON.stringify(['positions', 'greys', 'sigmas', 'joins', 'keyframes'].map(
+        (name) => Array.from(map.map[name])))];""")
+
+
 def answers(opened):
     return opened.run("return [...document.querySelectorAll('#answers li')].map((item) => item.textContent);")
 
@@ -95,6 +102,16 @@ class Viewer(unittest.TestCase):
             self.assertTrue(comes_true(lambda: seen("lost")), "the camera moved on meanwhile")
             self.assertTrue(comes_true(lambda: "at its end" in opened.text("#warnings")), opened.text("#warnings"))
             self.assertTrue(has_map(opened), "the map stays")
+            self.assertGreater(whole_map(opened)[0], 2, "it came in parts")
+
+            def last_one_came():
+                number = whole_map(opened)[0]
+                time.sleep(5)
+                return number == whole_map(opened)[0]
+            self.assertTrue(comes_true(last_one_came))
+            put_together = whole_map(opened)
+            opened.open(program.page)
+            self.assertEqual(comes_true(lambda: whole_map(opened)), put_together, "a page that is opened now gets it whole")
             opened.click("[data-command=reset]")
             self.assertIn("Really", opened.text("[data-command=reset]"))
             opened.click("[data-command=reset]")
