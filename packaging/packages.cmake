@@ -53,7 +53,7 @@ This package has the command, the service and its configuration.")
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_NAME edgeslam)
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_RECOMMENDS "libcamera-ipa")
-set(CPACK_DEBIAN_EDGESLAM_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers")
+set(CPACK_DEBIAN_EDGESLAM_PACKAGE_DEPENDS "procps, systemd | systemd-standalone-sysusers")  # procps: kill, to reload
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/conffiles
   ${CMAKE_SOURCE_DIR}/packaging/debian/postinst ${CMAKE_SOURCE_DIR}/packaging/debian/prerm
   ${CMAKE_SOURCE_DIR}/packaging/debian/postrm)

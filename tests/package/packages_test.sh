@@ -63,7 +63,9 @@ run_program() {
   [[ $(run edgeslam --version) == "edgeslam $(installed edgeslam Version)" ]] || fail "--version"
   run_or_fail "the default configuration" edgeslam check-config /etc/edgeslam/robot.yaml
   run_or_fail "no user edgeslam" getent passwd edgeslam
-  run systemd-analyze verify /lib/systemd/system/edgeslam.service 2>&1 | grep -i "edgeslam" && fail "the unit" || true
+  local problems
+  problems=$(run systemd-analyze verify /lib/systemd/system/edgeslam.service 2>&1 | grep -i "edgeslam" || true)
+  [[ -z $problems ]] || fail "the unit: $problems"
   local subcommands
   subcommands=$(run edgeslam --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
   (($(wc -w <<< "$subcommands") >= 8)) || fail "subcommands of --help not understood: $subcommands"
