@@ -1,5 +1,6 @@
 # A manual page for the command and for each subcommand, from what --help says and packaging/man. Made by the target
-# manual_pages, which packages need; help2man runs the program, in a cross build by its emulator.
+# manual_pages, which packages need; help2man runs the program, in a cross build by its emulator. A page's name has no
+# space.
 find_program(HELP2MAN help2man)
 if(NOT HELP2MAN)
   message(STATUS "Left out: manual pages (Debian package help2man)")
@@ -18,6 +19,7 @@ function(edgeslam_manual_page name line)
     COMMAND ${CMAKE_COMMAND} -E make_directory ${manual_folder}
     COMMAND ${HELP2MAN} --no-info --section=1 --version-string=${PROJECT_VERSION} --source "Edge SLAM ${PROJECT_VERSION}"
       --name ${line} --include ${sections} --output ${page} ${command}
+    COMMAND sed -i -e "2s/EDGESLAM \\([A-Z-]*\\) /EDGESLAM-\\1 /" -e "4s/^edgeslam \\([a-z-]* \\\\-\\)/edgeslam-\\1/" ${page}
     COMMAND ${GZIP} -9nf ${page}
     DEPENDS edgeslam ${sections} VERBATIM)
   set(manual_pages ${manual_pages} ${page}.gz PARENT_SCOPE)
@@ -26,6 +28,7 @@ endfunction()
 edgeslam_manual_page(edgeslam "monocular SLAM on image edges")
 edgeslam_manual_page(edgeslam-run "poses from the camera to LCM" run)
 edgeslam_manual_page(edgeslam-replay "run over recorded frames" replay)
+edgeslam_manual_page(edgeslam-view "show a run over recorded frames in the browser" view)
 edgeslam_manual_page(edgeslam-evaluate "error of a trajectory against a reference" evaluate)
 edgeslam_manual_page(edgeslam-report "two runs side by side, or a table of runs" report)
 edgeslam_manual_page(edgeslam-benchmark "run over all sequences under a folder" benchmark)

@@ -1,11 +1,23 @@
-# Debian packages:  cmake --build BUILD --target manual_pages && cpack -G DEB --config BUILD/CPackConfig.cmake
+# Debian packages:  cmake --preset packages && cmake --build --preset packages && (cd build/packages && cpack)
+option(EDGESLAM_DEBUG_SYMBOLS "Packages of debug symbols (functions and lines), too; objects take 30 times the space" OFF)
+if(EDGESLAM_DEBUG_SYMBOLS)
+  target_compile_options(edgeslam_settings INTERFACE -g1 -fdebug-prefix-map=${CMAKE_SOURCE_DIR}=/usr/src/edgeslam)
+endif()
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME edgeslam)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "Edge SLAM maintainers <maintainers@users.noreply.h-seed-3b6aca39.example>")
 set(CPACK_PACKAGE_VENDOR "Edge SLAM")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_STRIP_FILES ON)
+if(EDGESLAM_DEBUG_SYMBOLS)
+  set(CPACK_DEBIAN_EDGESLAM_DEBUGINFO_PACKAGE ON)  # strips, too
+  set(CPACK_DEBIAN_LIBEDGESLAM0_DEBUGINFO_PACKAGE ON)
+  set(CPACK_POST_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/packaging/name_debug_packages.cmake)
+else()
+  set(CPACK_STRIP_FILES ON)
+endif()
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
   WORLD_READ WORLD_EXECUTE)
 set(CPACK_COMPONENTS_ALL edgeslam libedgeslam0 libedgeslam-dev)
@@ -33,23 +45,23 @@ if(CMAKE_CROSSCOMPILING)
 endif()
 
 set(CPACK_COMPONENT_EDGESLAM_DESCRIPTION "monocular SLAM on image edges, as a service over LCM
-Edge SLAM tells a robot with one camera where it is, at every frame, also in front
-of bare walls: it follows points on image edges, builds a 3D map of them, and
-publishes a pose with its uncertainty over LCM.
+Edge SLAM tells a robot with one camera where it is, at every frame, also in
+front of bare walls: it follows points on image edges, builds a 3D map of them,
+and publishes a pose with its uncertainty over LCM.
 
 This package has the command, the service and its configuration.")
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_NAME edgeslam)
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_RECOMMENDS "libcamera-ipa")
-set(CPACK_DEBIAN_EDGESLAM_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers")
+set(CPACK_DEBIAN_EDGESLAM_PACKAGE_DEPENDS "procps, systemd | systemd-standalone-sysusers")  # procps: kill, to reload
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/conffiles
   ${CMAKE_SOURCE_DIR}/packaging/debian/postinst ${CMAKE_SOURCE_DIR}/packaging/debian/prerm
   ${CMAKE_SOURCE_DIR}/packaging/debian/postrm)
 
 set(CPACK_COMPONENT_LIBEDGESLAM0_DESCRIPTION "monocular SLAM on image edges, shared library
-Edge SLAM tells a robot with one camera where it is, at every frame, also in front
-of bare walls: it follows points on image edges, builds a 3D map of them, and
-gives a pose with its uncertainty.
+Edge SLAM tells a robot with one camera where it is, at every frame, also in
+front of bare walls: it follows points on image edges, builds a 3D map of them,
+and gives a pose with its uncertainty.
 
 This package has the library that programs use.")
 set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_NAME libedgeslam0)
@@ -57,9 +69,9 @@ set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBEDGESLAM0_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/triggers)
 
 set(CPACK_COMPONENT_LIBEDGESLAM-DEV_DESCRIPTION "monocular SLAM on image edges, development files
-Edge SLAM tells a robot with one camera where it is, at every frame, also in front
-of bare walls: it follows points on image edges, builds a 3D map of them, and
-gives a pose with its uncertainty.
+Edge SLAM tells a robot with one camera where it is, at every frame, also in
+front of bare walls: it follows points on image edges, builds a 3D map of them,
+and gives a pose with its uncertainty.
 
 This package has the headers and the CMake package to build programs with.")
 set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_NAME libedgeslam-dev)

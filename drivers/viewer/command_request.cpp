@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "drivers/lcm/clocks.h"
+#include "edgeslam/input_error.h"
 
 namespace edgeslam {
 namespace {
@@ -58,7 +59,7 @@ CommandRequest readCommandRequest(std::string_view body, std::int64_t id) {
     if (member == "command") continue;
     const std::string wrong = *kind == command_t::SET_SCALE ? readScaleMember(member, value, message)
                                                             : "'" + member.substr(0, 40) + "' is not expected here";
-    if (!wrong.empty()) return {std::nullopt, wrong};
+    if (!wrong.empty()) return {std::nullopt, InputError::oneLine(wrong)};
   }
   CheckedCommand checked = checkCommand(message, monotonicUtime());
   if (checked.refusal) return {std::nullopt, checked.refusal->message};

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
-#include <new>
 #include <string>
 
 #include "app/benchmark_command.h"
@@ -15,6 +14,7 @@
 #include "app/cameras_command.h"
 #include "app/check_config_command.h"
 #include "app/evaluate_command.h"
+#include "app/failure_message.h"
 #include "app/listen_command.h"
 #include "app/record_command.h"
 #include "app/replay_command.h"
@@ -78,10 +78,8 @@ int runCommandLine(int argc, const char* const* argv) {
     exit_code = parseAndRun(argc, argv);
   } catch (const InputError& error) {
     exit_code = tellFailure(exit_bad_input, error.what());
-  } catch (const std::bad_alloc&) {
-    exit_code = tellFailure(exit_failed, "out of memory");
   } catch (const std::exception& error) {  // cv::Exception among them
-    exit_code = tellFailure(exit_failed, std::string("internal error: ") + error.what());
+    exit_code = tellFailure(exit_failed, failureMessage(error));
   }
   if (standardOutputLost()) {
     return tellFailure(exit_bad_input, "the standard output cannot be written (is the disk full?)");

@@ -1,5 +1,6 @@
 #include "app/configuration.h"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "app/configuration_camera.h"
 #include "app/configuration_capture.h"
@@ -153,17 +155,48 @@ std::optional<Problem> readIncluded(const YAML::Node& node, bool may_include, co
   const int line = node.Mark().line;
   if (!may_include) return Problem{line, "include: an included file includes no other"};
   if (!node.IsScalar() || node.Scalar().empty()) return Problem{line, "include: the path of a file is expected"};
-  readFile((std::filesystem::path(path).parent_path() / node.Scalar()).string(), false, configuration, problems);
+  const std::filesystem::path included = std::filesystem::path(path).parent_path() / node.Scalar();
+  std::error_code error;
+  if (std::filesystem::exists(included, error) && !std::filesystem::is_regular_file(included, error)) {
+    return Problem{line, "include: " + node.Scalar() + " is no file"};  // a pipe would be waited for
+  }
+  readFile(included.string(), false, configuration, problems);
   return std::nullopt;
+}
+
+// Where each document begins; what is in them is left to others.
+struct DocumentStarts : YAML::EventHandler {
+  std::vector<YAML::Mark> starts;
+
+  void OnDocumentStart(const YAML::Mark& mark) override { starts.push_back(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+// YAML::LoadAll would read a text that begins with a comma as empty documents without end.
+std::optional<Problem> secondDocument(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStarts documents;
+  if (!parser.HandleNextDocument(documents) || !parser.HandleNextDocument(documents)) return std::nullopt;
+  const YAML::Mark& first = documents.starts.front();
+  const YAML::Mark& second = documents.starts.back();
+  if (second.pos == first.pos) return Problem{first.line, "is not YAML: a key is expected here"};
+  return Problem{second.line, "a second document; only one is expected"};
 }
 
 void readDocuments(const std::string& path, bool may_include, Configuration& configuration, std::vector<Problem>& found,
                    std::vector<std::string>& problems) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(readText(path));
-    if (documents.size() > 1) found.push_back({documents[1].Mark().line, "a second document; only one is expected"});
-    if (documents.empty()) return;
-    const YAML::Node& document = documents.front();
+    const std::string text = readText(path);
+    if (const auto second = secondDocument(text)) found.push_back(*second);
+    const YAML::Node document = YAML::Load(text);
     if (document.IsMap() && document[include_key]) {
       const auto wrong = readIncluded(document[include_key], may_include, path, configuration, problems);
       if (wrong) found.push_back(*wrong);

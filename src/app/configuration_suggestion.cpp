@@ -1,6 +1,7 @@
 #include "app/configuration_suggestion.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace edgeslam {
 namespace {
@@ -36,7 +37,10 @@ std::string closestKey(const std::string& wrong, const std::vector<std::string>&
   std::string closest;
   int closest_distance = std::max(2, static_cast<int>(lastName(wrong).size()) / 3) + 1;
   for (const std::string& key : known) {
-    const int distance = lastName(wrong) == lastName(key) ? 1 : editDistance(wrong, key);
+    const bool same_name = lastName(wrong) == lastName(key);
+    const int longer = std::abs(static_cast<int>(wrong.size()) - static_cast<int>(key.size()));
+    if (!same_name && longer >= closest_distance) continue;
+    const int distance = same_name ? 1 : editDistance(wrong, key);
     if (distance < closest_distance) {
       closest_distance = distance;
       closest = key;

@@ -1,6 +1,7 @@
 // The robot's commands, and the map as messages and file.
 #include <utility>
 
+#include "app/failure_message.h"
 #include "app/run_publisher.h"
 #include "dataset/saved_map.h"
 #include "pipeline/map_records.h"
@@ -23,7 +24,7 @@ std::pair<bool, std::string> save(const Map& map, const Camera& camera, const st
   try {
     saveMap(path, camera, map);
   } catch (const std::exception& error) {
-    return {false, std::string("the map is not saved: ") + error.what()};
+    return {false, "the map is not saved: " + failureMessage(error)};
   }
   return {true, "map of " + std::to_string(map.keyframes.size()) + " keyframes and " +
                     std::to_string(map.points.size()) + " points saved to " + path};

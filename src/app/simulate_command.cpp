@@ -18,7 +18,7 @@ namespace {
 struct SimulateOptions {
   SimulationOptions simulation;
   std::string scene, output;
-  std::vector<std::string> covered, shaken, still;
+  std::vector<std::string> covered, shaken, still, turned;
   bool force = false;
 };
 
@@ -42,6 +42,7 @@ int simulate(SimulateOptions options) {
   options.simulation.covered = frameRanges(options.covered);
   options.simulation.shaken = frameRanges(options.shaken);
   options.simulation.still = frameRanges(options.still);
+  options.simulation.turned = frameRanges(options.turned);
   const SimulatedSequence sequence = makeSequence(options.simulation);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   writeSequence(sequence, options.output, options.force,
@@ -78,6 +79,11 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command
       ->add_option("--still", options->still, "Frames in which the camera stands still, FIRST:COUNT; may be repeated")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--turn", options->turned,
+                   "Frames in which the camera turns on the spot, 40 degrees to the side and back, FIRST:COUNT; may be "
+                   "repeated")
       ->allow_extra_args(false);
   command->add_flag("--force", options->force, "Write to a folder that is not empty");
   command->callback([options, &exit_code] { exit_code = simulate(*options); });

@@ -11,49 +11,46 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* temporary_suffix = ".partial";
-
-// The outermost folder that has to be made, or an empty path.
-fs::path firstMissing(const fs::path& folder) {
-  fs::path missing;
+// The folders that have to be made, the innermost first.
+std::vector<fs::path> missingFolders(const fs::path& folder) {
+  std::vector<fs::path> missing;
   std::error_code ignored;
-  for (fs::path path = folder; !path.empty() && !fs::exists(path, ignored); path = path.parent_path()) missing = path;
+  for (fs::path path = folder; !path.empty() && !fs::exists(path, ignored); path = path.parent_path()) {
+    missing.push_back(path);
+  }
   return missing;
 }
 
-fs::path temporary(const fs::path& folder, const FileContent& file) { return folder / (file.name + temporary_suffix); }
-
 void writeAndRename(const fs::path& folder, const std::vector<FileContent>& files) {
+  std::vector<PendingFile> pending;
   for (const FileContent& file : files) {
+    const std::string path = (folder / file.name).string();
     std::error_code ignored;
-    if (fs::is_directory(folder / file.name, ignored)) {
-      throw InputError((folder / file.name).string() + ": a folder stands where this file is to be written");
+    if (fs::is_directory(path, ignored)) {
+      throw InputError(path + ": a folder stands where this file is to be written");
     }
-    writeFileAtomically(temporary(folder, file).string(), file.content);
+    pending.emplace_back(path, file.content);
   }
-  for (const FileContent& file : files) {
-    std::error_code error;
-    fs::rename(temporary(folder, file), folder / file.name, error);
-    if (error) throw InputError((folder / file.name).string() + ": cannot be written: " + error.message());
-  }
+  for (PendingFile& file : pending) file.takePlace();
 }
 
 }  // namespace
 
 void writeFileSet(const std::string& folder_name, const std::vector<FileContent>& files) {
   const fs::path folder = fs::path(folder_name.empty() ? "." : folder_name);
-  const fs::path made = firstMissing(folder);
-  std::error_code ignored;
+  const std::vector<fs::path> made = missingFolders(folder);
   try {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw InputError(folder.string() + ": the output folder cannot be made: " + error.message());
     writeAndRename(folder, files);
   } catch (const InputError&) {
-    for (const FileContent& file : files) fs::remove(temporary(folder, file), ignored);
-    if (!made.empty()) fs::remove_all(made, ignored);
+    std::error_code ignored;
+    if (!made.empty()) fs::remove_all(made.back(), ignored);
     throw;
   }
+  syncFolder(folder.string());
+  for (const fs::path& path : made) syncFolder(path.parent_path().string());
 }
 
 }  // namespace edgeslam

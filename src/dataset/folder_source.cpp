@@ -38,6 +38,18 @@ std::size_t colourColumn(const std::vector<std::string_view>& columns) {
   return 1;
 }
 
+// A line of rgb.txt or associations.txt.
+StampedFile readImageLine(const std::string& list_path, const TextLine& line, const std::vector<StampedFile>& before) {
+  const std::string place = placeInFile(list_path, line.number);
+  const std::vector<std::string_view> columns = splitColumns(line.text);
+  if (columns.size() < 2) throw InputError(place + "expected 'time-stamp file', found '" + line.text + "'");
+  const std::size_t column = colourColumn(columns);
+  const std::optional<std::int64_t> time = parseStamp(columns[column - 1]);
+  if (!time) throw InputError(place + "'" + std::string(columns[column - 1]) + "' is not a time stamp [s]");
+  checkIncreasing(list_path, line, before, *time);
+  return {*time, pathInFolder(fs::path(list_path).parent_path(), columns[column], place)};
+}
+
 class FolderSource : public FrameSource {
  public:
   FolderSource(std::string kind, std::vector<StampedFile> files, FrameCompanions companions)
@@ -89,21 +101,13 @@ class FolderSource : public FrameSource {
 }  // namespace
 
 std::vector<StampedFile> readTumImageList(const std::string& list_path) {
-  const fs::path folder = fs::path(list_path).parent_path();
   std::vector<StampedFile> files;
   for (const TextLine& line : readTextLines(list_path)) {
-    const std::vector<std::string_view> columns = splitColumns(line.text);
-    if (columns.size() < 2) {
-      throw InputError(placeInFile(list_path, line.number) + "expected 'time-stamp file', found '" + line.text + "'");
+    try {
+      files.push_back(readImageLine(list_path, line, files));
+    } catch (const InputError&) {
+      if (line.ended || files.empty()) throw;
     }
-    const std::size_t column = colourColumn(columns);
-    const std::optional<std::int64_t> time = parseStamp(columns[column - 1]);
-    if (!time) {
-      throw InputError(placeInFile(list_path, line.number) + "'" + std::string(columns[column - 1]) +
-                       "' is not a time stamp [s]");
-    }
-    checkIncreasing(list_path, line, files, *time);
-    files.push_back({*time, pathInFolder(folder, columns[column], placeInFile(list_path, line.number))});
   }
   if (files.empty()) throw InputError(list_path + ": lists no frames; expected lines 'time-stamp file'");
   return files;

@@ -23,8 +23,8 @@ struct FrameCompanions {
 };
 
 // TUM RGB-D's rgb.txt ("time file" a line, seconds) and the associations.txt of TUM and ICL-NUIM, whose four columns
-// name a colour and a depth image in either order. Files are relative to the list's folder. Throws InputError with file
-// and line.
+// name a colour and a depth image in either order. Files are relative to the list's folder. A last line that a
+// power cut tore (no line end) is left out, where it is none. Throws InputError with file and line.
 std::vector<StampedFile> readTumImageList(const std::string& list_path);
 
 // EuRoC's data.csv ("time [ns],file" a line); files lie in data/ beside it. Throws InputError with file and line.

@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::int64_t sync_interval_ns = 1'000'000'000;  // of the frames' time
+
 std::string reason(int error) { return std::generic_category().message(error); }
 
 // 0 or an errno.
@@ -74,6 +76,7 @@ FrameFolderWriter::FrameFolderWriter(std::string folder, const std::optional<Cam
   const std::string heading = "# " + source + "\n# timestamp filename\n";
   const int failed = list_ < 0 ? errno : writeAll(list_, heading.data(), heading.size());
   if (failed != 0) throw InputError(list + ": cannot be written: " + reason(failed));
+  syncFolder(fs::path(fs::absolute(folder_, error)).parent_path().string());
 }
 
 FrameFolderWriter::~FrameFolderWriter() { close(); }
@@ -96,22 +99,30 @@ std::string FrameFolderWriter::write(std::int64_t time_ns, const cv::Mat& grey) 
   if (const int error = writeNewFile(folder_ + "/" + name, png_); error != 0) {
     return fail(folder_ + "/" + name + ": cannot be written: " + reason(error));
   }
-  const std::string line = formatStamp(time_ns) + " " + name + "\n";
-  if (const int error = writeAll(list_, line.data(), line.size()); error != 0) {
-    return fail(folder_ + "/" + recording_list_name + ": cannot be written: " + reason(error));
-  }
+  waiting_lines_ += formatStamp(time_ns) + " " + name + "\n";
   last_ns_ = time_ns;
   ++frames_;
   bytes_ += size;
-  return "";
+  if (synced_ns_ >= 0 && time_ns - synced_ns_ < sync_interval_ns) return "";
+  synced_ns_ = time_ns;
+  return sync();
+}
+
+// The images, which lie on the list's file system, and then the list.
+std::string FrameFolderWriter::sync() {
+  const std::string lines = std::exchange(waiting_lines_, "");
+  int error = syncfs(list_) != 0 ? errno : 0;
+  if (error == 0) error = writeAll(list_, lines.data(), lines.size());
+  if (error == 0 && fdatasync(list_) != 0) error = errno;
+  return error == 0 ? "" : fail(folder_ + "/" + recording_list_name + ": cannot be written: " + reason(error));
 }
 
 std::string FrameFolderWriter::close() {
   if (list_ < 0) return problem_;
-  // The images, too: they lie on the same file system.
-  const int error = syncfs(list_) != 0 ? errno : 0;
+  const std::string earlier = problem_;
+  sync();
   ::close(std::exchange(list_, -1));
-  if (error != 0 && problem_.empty()) problem_ = folder_ + ": cannot be written: " + reason(error);
+  if (!earlier.empty()) problem_ = earlier;
   return problem_;
 }
 

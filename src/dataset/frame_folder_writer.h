@@ -1,5 +1,6 @@
 // Frames of a camera as a folder in TUM layout, written while they come: rgb/SECONDS.png, rgb.txt that names them, and
-// camera.yaml where the calibration is known. What is on disk can be read at every moment, however the writing ends.
+// camera.yaml where the calibration is known. What is on disk can be read at every moment, however the writing ends:
+// the list names only what the disk has confirmed, which it is asked for once a second of frames.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,7 @@ class FrameFolderWriter {
   // `grey`: CV_8U; time stamps grow. Returns what went wrong (full disk, a limit reached), after which nothing more is
   // written, or an empty text. A frame that could not be written whole is not there.
   std::string write(std::int64_t time_ns, const cv::Mat& grey);
-  // Waits until the disk holds the list and all that it names. What went wrong, or an empty text.
+  // Waits until the disk holds all frames and the list of them. What went wrong, or an empty text.
   std::string close();
 
   std::int64_t frames() const { return frames_; }
@@ -34,12 +35,14 @@ class FrameFolderWriter {
 
  private:
   std::string fail(const std::string& problem);
+  std::string sync();
 
   std::string folder_;
   std::int64_t free_bytes_kept_;
   int list_ = -1;  // rgb.txt
   std::int64_t frames_ = 0, bytes_ = 0;
-  std::int64_t last_ns_ = -1;
+  std::int64_t last_ns_ = -1, synced_ns_ = -1;
+  std::string waiting_lines_;  // of frames that the disk has not confirmed
   std::string problem_;
   std::vector<unsigned char> png_;
 };

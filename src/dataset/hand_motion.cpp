@@ -13,6 +13,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kCorridorStep_s = 0.005;
 constexpr double kBrakingTime_s = 0.4;
 constexpr double kShakeRise_s = 0.15;
+constexpr double kTurn_rad = 40 * kPi / 180;
 constexpr double kPanelsPeriod_s = 26;
 constexpr double kRoomPeriod_s = 26;
 
@@ -58,6 +59,16 @@ Vector6d swayAt(const std::array<std::vector<Sway>, 6>& sways, double time_s) {
   Vector6d sway;
   for (int i = 0; i < 6; ++i) sway[i] = sumOf(sways[static_cast<std::size_t>(i)], time_s);
   return sway;
+}
+
+// About the camera's y axis [rad]: to the side in the first half of a span, back in the second.
+double turnAt(const CameraMotion& motion, double time_s) {
+  double angle = 0;
+  for (const TimeSpan& span : motion.turned) {
+    const double half_s = (span.end_s - span.begin_s) / 2;
+    angle += kTurn_rad * smoothStep((time_s - span.begin_s) / half_s) * smoothStep((span.end_s - time_s) / half_s);
+  }
+  return angle;
 }
 
 // Camera at `position` that looks along `forward`, upright.
@@ -229,7 +240,10 @@ Pose poseAt(const CameraMotion& motion, double time_s) {
         smoothStep((time_s - span.begin_s) / kShakeRise_s) * smoothStep((span.end_s - time_s) / kShakeRise_s);
     if (strength > 0) sway += strength * swayAt(motion.shake, time_s);
   }
-  return retract(pose, sway);
+  pose = retract(pose, sway);
+  const double turn = turnAt(motion, time_s);
+  if (turn != 0) pose.rotation = pose.rotation * Eigen::Quaterniond(Eigen::AngleAxisd(turn, Vector3d::UnitY()));
+  return pose;
 }
 
 double lapTime(const CameraMotion& motion) {

@@ -29,6 +29,7 @@ struct CameraMotion {
   std::array<std::vector<Sway>, 6> shake;   // the same, while the camera is shaken
   std::vector<TimeSpan> shaken;
   std::vector<TimeSpan> still;               // the camera does not move at all; it brakes and starts just outside
+  std::vector<TimeSpan> turned;              // it turns on the spot, to the side and back; it stands still then, too
   double path_phase = 0;                     // [rad], where on its path the camera starts
   std::vector<double> corridor_distances_m;  // corridor: way gone, every kCorridorStep_s
 };

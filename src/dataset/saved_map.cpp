@@ -1,12 +1,6 @@
 #include "dataset/saved_map.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -59,11 +53,12 @@ void requireMapCanBeSaved(const std::string& path) {
     throw InputError(path + ": the map cannot be saved there: " + folder.string() + " is no folder");
   }
   // Permissions alone don't tell: there are folders in which not even root can make a file.
-  std::string trial = path + ".XXXXXX";
-  const int file = ::mkostemp(trial.data(), O_CLOEXEC);
-  if (file < 0) throw InputError(path + ": the map cannot be saved there: " + std::strerror(errno));
-  ::close(file);
-  ::unlink(trial.c_str());
+  try {
+    const PendingFile trial(path, "");
+  } catch (const InputError& problem) {
+    const std::string reason = std::string(problem.what()).substr(path.size() + std::string(": ").size());
+    throw InputError(path + ": the map cannot be saved there: " + reason);
+  }
 }
 
 Map loadMap(const std::string& path, const Camera& camera) {

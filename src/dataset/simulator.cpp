@@ -150,6 +150,7 @@ SimulatedSequence makeSequence(const SimulationOptions& options) {
   checkRanges("cover", options.covered, frames);
   checkRanges("shake", options.shaken, frames);
   checkRanges("still", options.still, frames);
+  checkRanges("turn", options.turned, frames);
 
   sequence.camera = makeCamera(options);
   sequence.rays = makeRayTable(sequence.camera);
@@ -158,6 +159,9 @@ SimulatedSequence makeSequence(const SimulationOptions& options) {
   sequence.motion = makeCameraMotion(options.scene, options.speed, options.seed, frameTime(options, frames));
   sequence.motion.shaken = timeSpans(options.shaken, options.fps);
   sequence.motion.still = timeSpans(options.still, options.fps);
+  sequence.motion.turned = timeSpans(options.turned, options.fps);
+  sequence.motion.still.insert(sequence.motion.still.end(), sequence.motion.turned.begin(),
+                               sequence.motion.turned.end());
 
   std::vector<double> means;
   for (int i = 0; i < frames; ++i) {

@@ -94,7 +94,7 @@ std::vector<TextLine> readTextLines(const std::string& path) {
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
     const std::string_view text = trim(line);
-    if (!text.empty() && text.front() != '#') lines.push_back({number, std::string(text)});
+    if (!text.empty() && text.front() != '#') lines.push_back({number, std::string(text), !file.eof()});
   }
   if (file.bad()) throw InputError(path + ": reading failed: " + std::strerror(errno));
   return lines;

@@ -11,8 +11,9 @@
 namespace edgeslam {
 
 struct TextLine {
-  int number = 0;    // in the file, counted from 1
-  std::string text;  // without line end and surrounding blanks
+  int number = 0;     // in the file, counted from 1
+  std::string text;   // without line end and surrounding blanks
+  bool ended = true;  // false: the file's last line has no line end; it may have been torn by a power cut
 };
 
 // The lines of a file that are neither empty nor comments ('#' first). Throws InputError with path and reason where it

@@ -168,6 +168,11 @@ std::string problemOf(const Fit& fit, const Found& found, int below, const Groun
     return "no ground seen: at most " + std::to_string(on) + " points on " + std::to_string(fit.edges) +
            " edges lie in a plane square to the body's z axis";
   }
+  // Refined, a plane leaves the samples' bound where a steeper one is near.
+  const double tilt_deg = std::acos(std::clamp(fit.plane.normal.dot(meanUp(scene)), -1.0, 1.0)) * 180 / M_PI;
+  if (tilt_deg > options.largest_tilt_deg) {
+    return "the plane is " + std::to_string(std::lround(tilt_deg)) + " degrees off what the body's z axis says";
+  }
   if (fit.extent < least_extent * found.height) return "the ground's points lie along one line";
   if (below > std::max(3.0, most_below * on)) {
     return std::to_string(below) + " points lie below the plane of " + std::to_string(on) + ": it is no ground";

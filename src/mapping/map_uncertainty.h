@@ -14,13 +14,13 @@ struct MapUncertaintyOptions {
   int fewest_points = 12;  // that two keyframes must share to be known relative to each other
   // Measurements of a point are not independent, nor of its neighbours on an edge: what they say of standard deviations
   // is too little by these factors.
-  double pose_factor = 3;
-  double scale_factor = 3;
+  double pose_factor = 4;
+  double scale_factor = 4;
   // What a way adds whatever is seen on it, for calibration and rolling shutters are never quite right: standard
   // deviations after a way as long as the scene is deep, or a turn of 1 rad, growing with the root of the way.
-  double position_walk = 0.006;  // share of the scene's depth
-  double rotation_walk = 0.006;  // [rad]
-  double scale_walk = 0.02;
+  double position_walk = 0.008;  // share of the scene's depth
+  double rotation_walk = 0.01;   // [rad]
+  double scale_walk = 0.03;
 };
 
 // Of the latest keyframe, from the others'.

@@ -90,11 +90,16 @@ void LiveRun::handOver() {
 }
 
 void LiveRun::stop(bool settle) {
-  if (!tracking_thread_.joinable()) return;
+  if (!publishing_thread_.joinable()) return;
+  // No thread could be started for them.
+  if (!tracking_thread_.joinable()) tracking_ended_.store(true, std::memory_order_release);
+  if (!mapping_thread_.joinable()) mapping_ended_.store(true, std::memory_order_release);
   stopping_.store(settle ? Stopping::settle : Stopping::at_once, std::memory_order_release);
   places_.interrupt(!settle);
   sem_post(&frame_ready_);
-  for (std::thread* thread : {&tracking_thread_, &mapping_thread_, &places_thread_}) thread->join();
+  for (std::thread* thread : {&tracking_thread_, &mapping_thread_, &places_thread_}) {
+    if (thread->joinable()) thread->join();
+  }
   tellApplied();
   sem_post(&result_ready_);
   publishing_thread_.join();

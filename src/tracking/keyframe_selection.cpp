@@ -15,7 +15,8 @@ KeyframeDecision selectKeyframe(const KeyframeEvidence& evidence, int image_widt
   if (evidence.mean_displacement_px > options.displacement_share * image_width) {
     return {KeyframeChoice::current_frame, "displacement"};
   }
-  if (evidence.seconds >= options.interval_s) return {KeyframeChoice::current_frame, "interval"};
+  const bool moved = evidence.mean_displacement_px > options.least_displacement_share * image_width;
+  if (evidence.seconds >= options.interval_s && moved) return {KeyframeChoice::current_frame, "interval"};
   return {};
 }
 

@@ -11,8 +11,11 @@ struct KeyframeOptions {
   int fewest_mapped = 250;    // P10: 3D-2D correspondences ...
   double mapped_share = 0.6;  // ... but at most this share of those at the last keyframe, so that bare scenes stay calm
   double displacement_share = 0.2;  // P11: mean displacement, as a share of the image's width
-  double interval_s = 0.5;          // P12 (the paper: 1 s)
-  int least_frames_apart = 3;       // no two keyframes nearer than this [frames]
+  double interval_s = 0.5;          // P12 (the paper: 1 s) ...
+  // ... if the image moved by this share of its width, rotation included: a camera that stands still learns nothing
+  // from another keyframe, and would lose those that it knows its place by.
+  double least_displacement_share = 0.005;
+  int least_frames_apart = 3;  // no two keyframes nearer than this [frames]
 };
 
 // What the criteria look at.

@@ -7,6 +7,11 @@
 namespace edgeslam {
 namespace {
 
+// Where fewer of the map points in view agree, something that moves may have drawn the pose to itself ...
+constexpr double most_of_them = 0.7;
+// ... and another pose is right if so many times as many agree with it. With the same points mostly, both are.
+constexpr double clearly_more = 1.2;
+
 // What is seen of a map point, with the uncertainty that its depth adds along the epipolar direction.
 PoseObservation observationOf(const Camera& camera, const MapView& view, const ViewPoint& point, const Track& track,
                               const Pose& predicted_T_world) {
@@ -81,9 +86,9 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
   pose.result.inliers.resize(mapped);
   pose.result.inlier_count = static_cast<int>(std::count(pose.result.inliers.begin(), pose.result.inliers.end(), 1));
   if (pose.result.inlier_count < options.fewest) pose.result.converged = false;
-  const bool trustworthy =
-      pose.result.converged && 2 * pose.result.inlier_count >= static_cast<int>(observations.size());
-  if (trustworthy || !view.initialised) return pose;
+  const auto agree = static_cast<double>(pose.result.inlier_count), visible = static_cast<double>(mapped);
+  const bool most_agree = pose.result.converged && agree >= most_of_them * visible;
+  if (most_agree || !view.initialised) return pose;
 
   Vectors3 points(memory), bearings(memory);
   points.reserve(mapped);
@@ -92,11 +97,13 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
     points.push_back(observation.point);
     bearings.push_back(bearing(camera, observation.measurement.pixel));
   }
-  const ResectioningResult resectioned = resectionBySamples(points, bearings, 3.0 / meanFocalLength(camera), /*seed=*/1,
-                                                            /*iterations=*/200, memory);
+  const bool half_agree = pose.result.converged && 2 * agree >= visible;
+  const ResectioningResult resectioned =
+      resectionBySamples(points, bearings, 3.0 / meanFocalLength(camera), /*seed=*/1, half_agree ? 50 : 200, memory);
   if (!resectioned.found) return pose;
   const PoseResult second = adjustPose(camera, resectioned.camera_T_world.inverse(), observations, options, memory);
-  if (second.converged && second.inlier_count > pose.result.inlier_count) {
+  const double fewest = half_agree ? clearly_more * agree : agree;
+  if (second.converged && second.inlier_count > fewest) {
     pose.result = second;
     pose.by_resectioning = true;
   }

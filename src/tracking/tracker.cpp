@@ -111,6 +111,7 @@ void Tracker::prepare(std::int64_t frame_index, std::int64_t time_ns, const cv::
   frame_.tracks.clear();
   frame_.covariance.setZero();
   frame_.inlier_count = 0;
+  frame_.outlier_share = 0;
   frame_.images = latest_images_ = std::move(images);
 }
 
@@ -154,6 +155,8 @@ bool Tracker::followAndLocate(StageClock& clock) {
   frame_.world_T_camera = pose.result.world_T_camera;
   frame_.covariance = pose.result.covariance;
   frame_.inlier_count = pose.result.inlier_count;
+  const auto in_view = static_cast<double>(pose.track_of_observation.size());
+  frame_.outlier_share = in_view > 0 ? 1 - frame_.inlier_count / in_view : 0;
 
   dropOutliers(pose);
   lockAlongEdges(camera_, view_, frame_.world_T_camera, options_.edge_lock, frame_.tracks);
@@ -225,6 +228,14 @@ Matrix6d Tracker::uncertaintyOfMapAt(const TrackedState& state) {
       .topLeftCorner<6, 6>();
 }
 
+// With the map's own uncertainty, of the last pose that was measured.
+Matrix6d Tracker::inWorld(const Matrix6d& covariance, double outlier_share) const {
+  const double contradiction = 1 + squared(outlier_share / options_.doubling_outlier_share);
+  Matrix6d sum = squared(options_.correlation_factor) * contradiction * covariance + map_covariance_;
+  sum.diagonal().tail<3>().array() += squared(options_.calibration_sigma / meanFocalLength(camera_));
+  return sum;
+}
+
 void Tracker::report(bool mapping_busy, TrackingOutcome& outcome) {
   outcome.state = view_.initialised ? FrameState::tracking : FrameState::initialising;
   if (!view_.initialised) outcome.reason = view_.waiting_for;
@@ -232,7 +243,7 @@ void Tracker::report(bool mapping_busy, TrackingOutcome& outcome) {
   outcome.covariance = frame_.covariance;
   if (view_.initialised) {
     map_covariance_ = uncertaintyOfMapAt(frame_);
-    outcome.world_covariance = squared(options_.correlation_factor) * frame_.covariance + map_covariance_;
+    outcome.world_covariance = inWorld(frame_.covariance, frame_.outlier_share);
   }
   outcome.reference = view_.keyframes.back().id;
   outcome.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * frame_.world_T_camera;
@@ -266,7 +277,7 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, TrackingOut
   outcome.covariance = last_.covariance;
   outcome.covariance.diagonal().head<3>().array() += translation * translation;
   outcome.covariance.diagonal().tail<3>().array() += rotation * rotation;
-  outcome.world_covariance = squared(options_.correlation_factor) * outcome.covariance + map_covariance_;
+  outcome.world_covariance = inWorld(outcome.covariance, last_.outlier_share);
   outcome.reference = view_.keyframes.back().id;
   outcome.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * outcome.world_T_camera;
 }

@@ -50,6 +50,10 @@ struct TrackerOptions {
   // Errors of the map's points and of neighbours on an edge go together: the pose's standard deviations in the world
   // are so many times what independent measurements would give.
   double correlation_factor = 6;
+  // Map points that contradict the pose go together, too (something that moves, a torn image): this share of those in
+  // view doubles the pose's variance in the world, twice the share makes it five times as large.
+  double doubling_outlier_share = 0.2;
+  double calibration_sigma = 0.5;  // of directions, whatever is seen: no calibration is quite right [px]
 };
 
 enum class FrameState { initialising, tracking, predicted, lost };
@@ -129,6 +133,7 @@ class Tracker {
     Pose world_T_camera;
     Matrix6d covariance = Matrix6d::Zero();
     int inlier_count = 0;
+    double outlier_share = 0;  // of the map points in view
   };
 
   void takeMemory();
@@ -141,6 +146,7 @@ class Tracker {
   void reuseMap(TrackedState& frame);
   void report(bool mapping_busy, TrackingOutcome& outcome);
   Matrix6d uncertaintyOfMapAt(const TrackedState& state);
+  Matrix6d inWorld(const Matrix6d& covariance, double outlier_share) const;
   void predict(std::int64_t time_ns, std::string_view reason, TrackingOutcome& outcome) const;
   void lose(std::int64_t time_ns, const char* reason, TrackingOutcome& outcome);
   Pose predictPose(std::int64_t time_ns) const;

@@ -6,6 +6,7 @@
 
 #include "dataset/evaluation.h"
 #include "dataset/trajectory.h"
+#include "system/bad_frames/measured_poses.h"
 #include "system/program.h"
 #include "system/surfaces.h"
 
@@ -31,6 +32,13 @@ TEST_P(SharedSequence, StaysWithinItsBounds) {
   EXPECT_LT(summary["absolute_trajectory_error"]["trajectory"]["rmse_m"].get<double>(), GetParam().error_m);
   EXPECT_GE(summary["coverage_from_first_pose"].get<double>(), 0.97);
   EXPECT_LE(summary["first_pose_s"].get<double>(), 3.0);
+
+  // Positions are as uncertain as they say, and do not say so by being uncertain without need.
+  const Honesty honesty =
+      honestyOf(readMeasuredPoses(folder.path("result")), readTrajectory(input + "/groundtruth.txt"));
+  EXPECT_GE(honesty.share_within, 0.99);
+  EXPECT_GE(honesty.normalised_error, 0.02);
+  EXPECT_LE(honesty.normalised_error, 2);
   if (!std::filesystem::exists(input + "/surfaces.txt")) return;
   const AbsoluteError error = absoluteError(readTrajectory(folder.path("result/trajectory.txt")),
                                             readTrajectory(input + "/groundtruth.txt"), Alignment::similarity);

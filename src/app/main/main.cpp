@@ -2,9 +2,11 @@
 #include <opencv2/core/utility.hpp>
 
 #include "app/command_line.h"
+#include "app/failure_message.h"
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);           // the same sums in the same order on any machine
   std::signal(SIGPIPE, SIG_IGN);  // `edgeslam replay ... | head` still writes its files
+  edgeslam::tellUncaughtErrors();
   return edgeslam::runCommandLine(argc, argv);
 }

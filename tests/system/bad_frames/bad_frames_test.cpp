@@ -6,25 +6,13 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "system/bad_frames/measured_poses.h"
-#include "system/bad_frames/spoilt_sequence.h"
-#include "system/run_result.h"
+#include "system/bad_frames/spoilt_run.h"
 #include "system/surfaces.h"
 
 namespace edgeslam {
 namespace {
 
-constexpr int length = 240;  // [frames], 30 a second
-constexpr int fault = 150;   // the first bad frame, unless a test says otherwise
-constexpr int a_second = 30;
-
-std::string folderOf(const std::string& name) { return std::string(EDGESLAM_RUN_FOLDER) + "/" + name; }
-
-struct Spoilt {
-  ReplayedRun run;
-  std::vector<MeasuredPose> good;
-  Honesty honesty;
-};
+constexpr int a_second = 30;  // [frames]
 
 // Of the map's points, from where the camera was halfway [map units].
 double medianDepth(const Spoilt& result) {
@@ -38,45 +26,9 @@ double medianDepth(const Spoilt& result) {
   return depths[depths.size() / 2];
 }
 
-class BadFrames : public ::testing::TestWithParam<std::string> {
+class BadFrames : public ::testing::TestWithParam<std::string>, protected SpoiltRun {
  protected:
-  SpoiltSequence sequence_{folderOf(GetParam()), length};
-
-  // What holds of every run.
-  Spoilt run() {
-    const std::string input = sequence_.write(folder_, "sequence");
-    Spoilt result{replayed(input, folder_.path("result")), {}, {}};
-    EXPECT_EQ(result.run.outcome.exit_code, 0) << result.run.outcome.messages;
-    EXPECT_EQ(static_cast<int>(result.run.states.size()), sequence_.size());
-    result.good = readMeasuredPoses(folder_.path("result"));
-    const Honesty& honesty = result.honesty = honestyOf(result.good, readTrajectory(input + "/groundtruth.txt"));
-    EXPECT_GE(honesty.share_within, 0.99) << "beyond their bound: " << ::testing::PrintToString(honesty.outside)
-                                          << ", largest error " << honesty.largest_error << " m";
-    RecordProperty("good", honesty.poses);
-    RecordProperty("share_within_percent", std::to_string(100 * honesty.share_within));
-    RecordProperty("normalised_error", std::to_string(honesty.normalised_error));
-    RecordProperty("median_sigma", std::to_string(honesty.median_sigma));
-    RecordProperty("largest_error_mm", std::to_string(1000 * honesty.largest_error));
-    return result;
-  }
-
-  // Good again within so many frames from `first` on, and nearly always from then on.
-  void expectGoodWithin(const Spoilt& result, int first, int frames) {
-    const int found = result.run.firstGood(first), last = static_cast<int>(result.run.states.size()) - 1;
-    ASSERT_GE(found, 0) << "never found again";
-    RecordProperty("frames_to_recover", found - first);
-    EXPECT_LE(found - first, frames);
-    EXPECT_LE(result.run.count("lost", found, last) + result.run.count("predicted", found, last), 3);
-  }
-
-  static void expectNoneGood(const Spoilt& result, int first, int last) {
-    for (const MeasuredPose& pose : result.good) {
-      EXPECT_FALSE(pose.frame >= first && pose.frame <= last) << "frame " << pose.frame << " is said to be good";
-    }
-  }
-
- private:
-  const TemporaryFolder folder_;
+  BadFrames() : SpoiltRun(GetParam()) {}
 };
 
 cv::Mat flat(int grey) { return cv::Mat(240, 320, CV_8U, cv::Scalar(grey)); }
@@ -170,6 +122,17 @@ TEST_P(BadFrames, Missing) {
     if (i % 10 == 0) sequence_.drop(i + 1);
   }
   expectGoodWithin(run(), fault + 42, 3);
+}
+
+// The upper half of each, the lower half of the one 5 before: as a driver does that hands out a buffer half filled.
+TEST_P(BadFrames, Torn) {
+  sequence_.replace(fault, fault + 9, [&](int index) {
+    cv::Mat torn = sequence_.original(index);
+    const cv::Range lower(torn.rows / 2, torn.rows);
+    sequence_.original(index - 5).rowRange(lower).copyTo(torn.rowRange(lower));
+    return torn;
+  });
+  expectGoodWithin(run(), fault + 10, 10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, BadFrames, ::testing::Values("hall", "parlour"),

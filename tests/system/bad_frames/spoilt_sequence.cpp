@@ -53,6 +53,16 @@ void SpoiltSequence::repeat(int index, int of) {
 
 void SpoiltSequence::drop(int index) { frames_.at(static_cast<std::size_t>(index)).comes = false; }
 
+void SpoiltSequence::standStill(int first, int count, double interval_s) {
+  const std::size_t begin = static_cast<std::size_t>(first), pictures = frames_.size() - begin;
+  const double end_s = std::stod(frames_.back().time);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    Frame frame = frames_.at(begin + i % pictures);
+    frame.time = std::to_string(end_s + static_cast<double>(i + 1) * interval_s);
+    frames_.push_back(std::move(frame));
+  }
+}
+
 int SpoiltSequence::size() const {
   return static_cast<int>(
       std::count_if(frames_.begin(), frames_.end(), [](const Frame& frame) { return frame.comes; }));

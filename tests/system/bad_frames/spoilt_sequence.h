@@ -28,6 +28,9 @@ class SpoiltSequence {
   // No frame comes at its time. The numbers of the others stay what they were until the sequence is written.
   void drop(int index);
 
+  // After the last frame `count` more, `interval_s` apart: the pictures from frame `first` on, over and over.
+  void standStill(int first, int count, double interval_s);
+
   int size() const;  // frames that come
 
   // In TUM layout, with ground truth. Returns the path of folder `name`, made in `folder`.

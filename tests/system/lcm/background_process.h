@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <stdexcept>
@@ -56,7 +57,15 @@ class BackgroundProcess {
     process_ = 0;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
+  // That it used so far, all its threads together [s].
+  double processorTime() const {
+    clockid_t clock = 0;
+    timespec used{};
+    if (clock_getcpuclockid(process_, &clock) != 0 || clock_gettime(clock, &used) != 0) return -1;
+    return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+  }
   void send(int signal) const { kill(process_, signal); }
+  pid_t id() const { return process_; }
   void end(int signal) {
     if (process_ <= 0) return;
     kill(process_, signal);

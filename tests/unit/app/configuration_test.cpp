@@ -1,6 +1,7 @@
 #include "app/configuration.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -104,6 +105,9 @@ TEST(Configuration, HostileTextIsRefusedWithoutHarm) {
   EXPECT_FALSE(problemsOf(std::string(1000, '\0')).empty());
   EXPECT_FALSE(problemsOf("edges: &e\n  edges: *e\n").empty());
   EXPECT_FALSE(problemsOf("edges:\n  ? *a\n  : &a 1\n").empty());
+  EXPECT_EQ(problemsOf(", 0.5]\npoints: {count: 300}\n"), Lines{"file.yaml:1: is not YAML: a key is expected here"});
+  EXPECT_EQ(problemsOf("points: {count: 300}\n---\n, 1\n"),
+            Lines{"file.yaml:2: a second document; only one is expected"});
   EXPECT_EQ(problemsOf(std::string((1 << 20) + 1, '\n')), Lines{"file.yaml: over 1 MiB, so it is no configuration"});
 }
 
@@ -149,6 +153,10 @@ TEST(Configuration, ProblemsOfAnIncludedFileAreToldWithItsName) {
   problems.clear();
   readConfiguration(folder.write("lost.yaml", "include: nowhere.yaml\n"), problems);
   EXPECT_EQ(problems, Lines{folder.path("nowhere.yaml") + ": cannot be opened"});
+  ASSERT_EQ(::mkfifo(folder.path("pipe.yaml").c_str(), 0600), 0);
+  problems.clear();
+  readConfiguration(folder.write("pipes.yaml", "include: pipe.yaml\n"), problems);
+  EXPECT_EQ(problems, Lines{folder.path("pipes.yaml") + ":1: include: pipe.yaml is no file"});
   EXPECT_EQ(problemsOf("points: {}\ninclude: [a, b]\n"), Lines{"file.yaml:2: include: the path of a file is expected"});
 }
 

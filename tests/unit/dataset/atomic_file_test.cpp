@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <functional>
 
 #include "unit/dataset/temporary_folder.h"
 
@@ -66,6 +67,41 @@ TEST(AtomicFile, AFolderThatIsNoneIsTold) {
   expectInputError([&] { writeFileAtomically(folder.path("file/f"), "x"); }, "file/f", std::strerror(ENOTDIR));
   std::filesystem::create_directories(folder.path("taken/inside"));
   expectInputError([&] { writeFileAtomically(folder.path("taken"), "x"); }, "taken", "cannot be written");
+  EXPECT_EQ(entries(folder.path()), 2U);
+}
+
+TEST(AtomicFile, WhatAPowerCutLeftGoesWithTheNextWriting) {
+  const TemporaryFolder folder;
+  const std::string kept = folder.write("kept", "of another");
+  const std::string left = folder.path(".f.partial");
+  for (const auto& leave : std::vector<std::function<void()>>{
+           [&] { folder.write(".f.partial", "half of i"); },
+           [&] { std::filesystem::create_symlink(kept, left); },
+           [&] { std::filesystem::create_hard_link(kept, left); },
+           [&] {
+             folder.write(".f.partial", "not to be read");
+             std::filesystem::permissions(left, std::filesystem::perms::none);
+           },
+       }) {
+    leave();
+    writeFileAtomically(folder.path("f"), "whole");
+    EXPECT_EQ(fileContent(folder.path("f")), "whole");
+    EXPECT_EQ(fileContent(kept), "of another");
+    EXPECT_EQ(entries(folder.path()), 2U);
+  }
+}
+
+TEST(AtomicFile, OnlyOneWritesItAtATime) {
+  const TemporaryFolder folder;
+  {
+    PendingFile first(folder.path("f"), "first");
+    expectInputError([&] { writeFileAtomically(folder.path("f"), "second"); }, folder.path("f"), "another program");
+    writeFileAtomically(folder.path("g"), "beside");
+    first.takePlace();
+  }
+  EXPECT_EQ(fileContent(folder.path("f")), "first");
+  { const PendingFile given_up(folder.path("f"), "never"); }
+  EXPECT_EQ(fileContent(folder.path("f")), "first");
   EXPECT_EQ(entries(folder.path()), 2U);
 }
 

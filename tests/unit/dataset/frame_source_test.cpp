@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "dataset/folder_source.h"
 #include "unit/dataset/temporary_folder.h"
 
 namespace edgeslam {
@@ -131,6 +132,19 @@ TEST(FrameSource, TimeStampsThatGoBackOrRepeatAreToldByLine) {
   std::filesystem::create_directories(euroc.path("cam0/data"));
   euroc.write("cam0/data.csv", "#t\n2000,a.png\n1000,b.png\n");
   expectRefused(euroc, "data.csv:3", "lies before");
+}
+
+TEST(FrameSource, ALastLineThatWasTornIsLeftOut) {
+  const std::string list = "10.25 a.png\n10.5 b.png\n";
+  const TemporaryFolder folder;
+  for (const char* torn : {"1", "10.", "10.75", "10.75 ", "x"}) {
+    folder.write("rgb.txt", list + torn);
+    EXPECT_EQ(readTumImageList(folder.path("rgb.txt")).size(), 2U) << torn;
+    folder.write("rgb.txt", list + torn + "\n");
+    expectInputError([&] { readTumImageList(folder.path("rgb.txt")); }, "rgb.txt:3");
+  }
+  folder.write("rgb.txt", list + "10.75 c.png");
+  EXPECT_EQ(readTumImageList(folder.path("rgb.txt")).size(), 3U) << "an editor that writes no last line end";
 }
 
 TEST(FrameSource, BadListsAreToldByLine) {

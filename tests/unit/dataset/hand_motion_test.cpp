@@ -45,6 +45,8 @@ TEST_P(Scenes, MotionIsThatOfAHandOrARobot) {
 TEST_P(Scenes, VelocityIsContinuous) {
   CameraMotion motion = makeCameraMotion(GetParam(), 1, 7, 30);
   motion.still.push_back({5, 6});
+  motion.still.push_back({15, 18});
+  motion.turned.push_back({15, 18});
   for (double time = 0.1; time < 28; time += 0.01) {
     const Speeds now = speedsAt(motion, time), next = speedsAt(motion, time + 0.01);
     EXPECT_LT(std::abs(now.metres - next.metres), 0.1) << time;

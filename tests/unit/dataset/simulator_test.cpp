@@ -120,6 +120,22 @@ TEST(Simulator, TimesFollowTheFrameRate) {
   EXPECT_EQ(sequence.frame(7).time_ns, sequence.time(7));
 }
 
+TEST(Simulator, ATurnIsOnTheSpotAndComesBack) {
+  SimulationOptions options = smallOptions(SceneKind::room);
+  options.frames = 60;
+  options.turned = {{20, 30}};
+  const SimulatedSequence sequence = makeSequence(options);
+  const Pose before = sequence.groundTruth(20);
+  double farthest = 0;
+  for (int i = 20; i <= 49; ++i) {
+    const Pose turned = sequence.groundTruth(i);
+    EXPECT_LT((turned.translation - before.translation).norm(), 1e-9) << i;
+    farthest = std::max(farthest, rotationAngle(before.rotation, turned.rotation));
+  }
+  EXPECT_NEAR(farthest * 180 / M_PI, 40, 2);
+  EXPECT_LT(rotationAngle(before.rotation, sequence.groundTruth(50).rotation), 0.01);
+}
+
 TEST(Simulator, FaultsComeInTheirFrames) {
   SimulationOptions options = smallOptions(SceneKind::room);
   options.covered = {{5, 4}};
@@ -195,6 +211,7 @@ TEST(Simulator, RefusesBadOptions) {
   refused([](SimulationOptions& o) { o.covered = {{30, 11}}; });
   refused([](SimulationOptions& o) { o.shaken = {{-1, 5}}; });
   refused([](SimulationOptions& o) { o.still = {{3, 0}}; });
+  refused([](SimulationOptions& o) { o.turned = {{3, 0}}; });
   refused([](SimulationOptions& o) { o.still = {{1, std::numeric_limits<int>::max()}}; });
 }
 

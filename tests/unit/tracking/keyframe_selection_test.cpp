@@ -60,6 +60,16 @@ TEST(KeyframeSelection, EachCriterionByItself) {
   }
 }
 
+TEST(KeyframeSelection, ACameraThatStandsStillMakesNoneHoweverLong) {
+  KeyframeEvidence evidence = calm();
+  evidence.seconds = 600;
+  evidence.frames = 18000;
+  evidence.mean_displacement_px = 3.1;
+  EXPECT_EQ(selectKeyframe(evidence, width, KeyframeOptions()).choice, KeyframeChoice::none);
+  evidence.mean_displacement_px = 3.3;
+  EXPECT_EQ(selectKeyframe(evidence, width, KeyframeOptions()).choice, KeyframeChoice::current_frame);
+}
+
 TEST(KeyframeSelection, TheEarlierCriterionGoesFirst) {
   KeyframeEvidence evidence = calm();
   std::vector<Criterion> all = criteria();

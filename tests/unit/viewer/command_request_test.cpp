@@ -30,6 +30,14 @@ TEST(CommandRequest, EveryCommandIsRead) {
   EXPECT_EQ(scale.command->distance_m, 0.5);
 }
 
+TEST(CommandRequest, AReasonIsOneLine) {
+  for (const char* body : {R"({"command": "reset", "a\nb": 1})", R"({"command": "set_scale", "\u001b[31m\r": 1})"}) {
+    const std::string problem = readCommandRequest(body, 1).problem;
+    EXPECT_NE(problem.find("is not expected"), std::string::npos) << problem;
+    for (const unsigned char c : problem) EXPECT_GE(c, 32) << problem;
+  }
+}
+
 TEST(CommandRequest, WhatMakesNoSenseIsRefusedInWords) {
   const std::pair<std::string, const char*> cases[] = {
       {"", "JSON object"},

@@ -1,0 +1,92 @@
+// Scenes and motion that mislead: as with bad frames, poses said to be good lie within the uncertainty stated with
+// them.
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "system/bad_frames/spoilt_run.h"
+
+namespace edgeslam {
+namespace {
+
+class BadScenes : public ::testing::TestWithParam<std::string>, protected SpoiltRun {
+ protected:
+  BadScenes() : SpoiltRun(GetParam()) {}
+};
+
+class RepeatedTexture : public ::testing::Test, protected SpoiltRun {
+ protected:
+  RepeatedTexture() : SpoiltRun("tiles") {}
+};
+
+class StandingStill : public ::testing::Test, protected SpoiltRun {
+ protected:
+  StandingStill() : SpoiltRun("hall_still") {}
+};
+
+// Something with a pattern of its own goes across, at last over a third of the picture.
+TEST_P(BadScenes, AMovingObject) {
+  cv::Mat object(160, 160, CV_8U);
+  cv::RNG random(7);
+  random.fill(object, cv::RNG::UNIFORM, 0, 256);
+  cv::GaussianBlur(object, object, {}, 3);
+  cv::normalize(object, object, 20, 235, cv::NORM_MINMAX);
+  sequence_.replace(fault, fault + 39, [&](int index) {
+    cv::Mat picture = sequence_.original(index);
+    const cv::Rect place(-160 + (index - fault + 1) * 480 / 41, 40, 160, 160);
+    const cv::Rect seen = place & cv::Rect(0, 0, picture.cols, picture.rows);
+    object(seen - place.tl()).copyTo(picture(seen));
+    return picture;
+  });
+  expectGoodWithin(run(), fault + 40, 5);
+}
+
+// Of four pictures at four times the rate, each gives a quarter of the rows: they are read one after the other, within
+// the time from frame to frame. The truth is of the time when the middle is read.
+TEST_P(BadScenes, RollingShutter) {
+  SpoiltSequence fast(folderOf(GetParam() + "_fast"), 4 * length);
+  for (int frame = 0; frame < length; ++frame) {
+    const int middle = 4 * frame + 2;
+    if (middle + 1 < 4 * length) {
+      fast.replace(middle, middle, [&](int index) {
+        cv::Mat read = fast.original(index);
+        for (int quarter = 0; quarter < 4; ++quarter) {
+          const cv::Range rows(read.rows * quarter / 4, read.rows * (quarter + 1) / 4);
+          fast.original(index - 2 + quarter).rowRange(rows).copyTo(read.rowRange(rows));
+        }
+        return read;
+      });
+    }
+    for (const int other : {0, 1, 3}) fast.drop(4 * frame + other);
+  }
+  sequence_ = fast;
+  const Spoilt result = run();
+  EXPECT_GE(result.honesty.poses, length * 2 / 3);
+}
+
+// The camera stands still and turns 40 degrees to the side and back: what comes into view has no parallax.
+TEST_P(BadScenes, TurningOnTheSpot) {
+  sequence_ = SpoiltSequence(folderOf(GetParam() + "_turn"), length);
+  const Spoilt result = run();
+  expectGoodWithin(result, fault + 60, 5);
+  EXPECT_LE(result.run.count("lost", fault, fault + 59), 20);
+}
+
+// Tiles all alike along a corridor.
+TEST_F(RepeatedTexture, PosesAreHonest) {
+  const Spoilt result = run();
+  EXPECT_GE(result.honesty.poses, length * 3 / 4);
+}
+
+// Ten minutes, at 5 frames a second: the last 30 pictures, each with noise of its own, over and over.
+TEST_F(StandingStill, ForTenMinutesNothingHappens) {
+  sequence_.standStill(length - 30, 3000, 0.2);
+  const Spoilt result = run();
+  EXPECT_EQ(result.run.count("tracking", length, sequence_.size() - 1), sequence_.size() - length);
+}
+
+INSTANTIATE_TEST_SUITE_P(Places, BadScenes, ::testing::Values("hall", "parlour"),
+                         [](const auto& place) { return place.param; });
+
+}  // namespace
+}  // namespace edgeslam

@@ -1,0 +1,133 @@
+// The daemon while its disk is full, read-only, broken, slow or gone: poses go on, it is told, and with the disk
+// recording and saving come back.
+#include <gtest/gtest.h>
+
+#include "dataset/recording_source.h"
+#include "dataset/saved_map.h"
+#include "system/faults/faulty_daemon.h"
+
+namespace edgeslam {
+namespace {
+
+struct DiskTrouble {
+  Fault fault;
+  std::string name, reason;
+};
+
+std::string nameOf(const testing::TestParamInfo<DiskTrouble>& trouble) { return trouble.param.name; }
+
+class FailingDiskOfADaemon : public FaultyDaemon, public testing::WithParamInterface<DiskTrouble> {};
+
+TEST_P(FailingDiskOfADaemon, CostsTheRecordingAndComesBack) {
+  FaultPlan plan;
+  plan.under = disk_;
+  plan.fault = GetParam().fault;
+  plan.while_exists = broken_;
+  const auto daemon = startFaulty(
+      plan, {"--config", configure("recording: {folder: " + recordings_ + ", from_start: true}\n"), "--map-out", map_});
+  ASSERT_TRUE(isTracking()) << daemon->said();
+  ASSERT_TRUE(robot_->hears([](const Heard& heard) { return heard.statuses.back().recording; })) << daemon->said();
+  daemon->send(SIGHUP);
+  ASSERT_TRUE(daemon->says("points saved to " + map_)) << daemon->said();
+  const std::string saved = fileContent(map_);
+  const std::string recording = std::filesystem::directory_iterator(recordings_)->path().string();
+
+  folder_.write("broken", "");
+  EXPECT_TRUE(daemon->says(GetParam().reason)) << daemon->said();
+  EXPECT_TRUE(robot_->hears([](const Heard& heard) { return !heard.statuses.back().recording; })) << daemon->said();
+  daemon->send(SIGHUP);
+  EXPECT_TRUE(daemon->says("the map is not saved: " + map_ + ": cannot be written: " + GetParam().reason))
+      << daemon->said();
+  EXPECT_TRUE(fileContent(map_) == saved) << "the map before stays";
+  const command_answer_t refused = robot_->ask(command_t::START_RECORDING);
+  EXPECT_FALSE(refused.accepted) << refused.message;
+  EXPECT_TRUE(goesOn()) << daemon->said();
+  EXPECT_LE(daemon->times("\nedgeslam: recording to "), 2) << "told once: " << daemon->said();
+
+  std::filesystem::remove(broken_);
+  const command_answer_t begun = robot_->ask(command_t::START_RECORDING);
+  EXPECT_TRUE(begun.accepted) << begun.message;
+  EXPECT_TRUE(robot_->hears([](const Heard& heard) { return heard.statuses.back().recording; })) << daemon->said();
+  EXPECT_TRUE(goesOn()) << daemon->said();
+  daemon->send(SIGTERM);
+  EXPECT_EQ(daemon->exitCode(), 0) << daemon->said();
+  EXPECT_FALSE(loadMap(map_, *openFrameSource(source_)->camera()).points.empty());
+  const Recording first = readRecording(recording);
+  EXPECT_FALSE(first.decisions.complete);
+  EXPECT_GT(first.frames.size(), 10U) << first.decisions.note;
+  const std::string second = begun.message.substr(begun.message.find('/'));
+  EXPECT_TRUE(readRecording(second).decisions.complete) << readRecording(second).decisions.note;
+}
+
+INSTANTIATE_TEST_SUITE_P(Disk, FailingDiskOfADaemon,
+                         testing::Values(DiskTrouble{Fault::no_space, "full", "No space left on device"},
+                                         DiskTrouble{Fault::read_only, "read_only", "Read-only file system"},
+                                         DiskTrouble{Fault::broken, "broken", "Input/output error"}),
+                         nameOf);
+
+class DiskOfADaemon : public FaultyDaemon {};
+
+// 50 ms for each call that changes a file: a frame that is recorded takes at least three.
+TEST_F(DiskOfADaemon, WhereSlowCostsFramesOfTheRecordingAndNoPoses) {
+  FaultPlan plan;
+  plan.under = disk_;
+  plan.fault = Fault::slow;
+  plan.while_exists = broken_;
+  const auto daemon = startFaulty(plan, {"--record", recordings_, "--map-out", map_});
+  ASSERT_TRUE(isTracking()) << daemon->said();
+  folder_.write("broken", "");
+  const Heard before = robot_->heard();
+  ASSERT_TRUE(robot_->hears([&](const Heard& heard) { return heard.statuses.size() > before.statuses.size() + 5; }));
+  const Heard after = robot_->heard();
+  // The recorder can write 7 frames a second and has room for two seconds of frames.
+  const std::int64_t captured = after.statuses.back().frames_captured - before.statuses.back().frames_captured;
+  const std::int64_t dropped = after.statuses.back().frames_dropped - before.statuses.back().frames_dropped;
+  EXPECT_GT(captured, 100) << "the camera is not held up";
+  EXPECT_LT(dropped, captured / 2) << "nor is tracking";
+  daemon->send(SIGTERM);
+  EXPECT_EQ(daemon->exitCode(), 0) << daemon->said();
+  const Recording recording = readRecording(recordings_);
+  EXPECT_GT(recording.decisions.not_recorded, 0) << "what was lost is told";
+  EXPECT_FALSE(recording.decisions.complete);
+  EXPECT_TRUE(daemon->says("without " + std::to_string(recording.decisions.not_recorded) + " frames or decisions"))
+      << daemon->said();
+  EXPECT_GT(recording.frames.size(), 20U);
+  EXPECT_FALSE(loadMap(map_, *openFrameSource(source_)->camera()).points.empty());
+}
+
+TEST_F(DiskOfADaemon, WhereItsFoldersVanishIsToldAndPosesGoOn) {
+  const auto daemon = startFaulty(FaultPlan(), {"--record", recordings_ + "/now", "--map-out", map_});
+  ASSERT_TRUE(isTracking()) << daemon->said();
+  std::filesystem::remove_all(disk_);
+  EXPECT_TRUE(daemon->says("No such file or directory")) << daemon->said();
+  daemon->send(SIGHUP);
+  EXPECT_TRUE(daemon->says("the map is not saved: " + map_)) << daemon->said();
+  EXPECT_TRUE(goesOn()) << daemon->said();
+  EXPECT_FALSE(isRecording());
+  std::filesystem::create_directory(disk_);
+  daemon->send(SIGTERM);
+  EXPECT_EQ(daemon->exitCode(), 0) << daemon->said();
+  EXPECT_FALSE(loadMap(map_, *openFrameSource(source_)->camera()).points.empty());
+}
+
+// Of the frames to come, that is.
+TEST_F(DiskOfADaemon, WhereFramesVanishTheyAreCountedAndTrackingComesBack) {
+  const std::string copy = folder_.path("copy");
+  std::filesystem::copy(parlour_, copy, std::filesystem::copy_options::recursive);
+  source_ = copy;
+  const auto daemon = startFaulty(FaultPlan(), {});
+  ASSERT_TRUE(isTracking()) << daemon->said();
+  std::vector<std::filesystem::path> images;
+  for (const auto& entry : std::filesystem::directory_iterator(copy + "/rgb")) images.push_back(entry.path());
+  std::sort(images.begin(), images.end());
+  constexpr std::size_t first = 200, last = 210;
+  for (std::size_t i = first; i < last; ++i) std::filesystem::remove(images.at(i));
+  EXPECT_EQ(daemon->exitCode(), 0) << daemon->said();
+  ASSERT_TRUE(robot_->hears([](const Heard& heard) { return heard.statuses.back().frames_captured == 300; }));
+  EXPECT_EQ(robot_->heard().statuses.back().frames_unreadable, static_cast<std::int64_t>(last - first));
+  EXPECT_EQ(daemon->times(".png: no such file"), 1) << "told once: " << daemon->said();
+  EXPECT_TRUE(isMeasured(robot_->heard().states.back())) << robot_->heard().states.back().reason;
+}
+
+}  // namespace
+}  // namespace edgeslam

@@ -1,0 +1,112 @@
+// The whole program where the power goes or the memory ends: what it had saved is there, and what it says is one line.
+#include <gtest/gtest.h>
+
+#include "dataset/frame_source.h"
+#include "dataset/recording_source.h"
+#include "dataset/saved_map.h"
+#include "system/faults/file_faults.h"
+#include "system/program.h"
+
+namespace edgeslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string small = std::string(EDGESLAM_RUN_FOLDER) + "/small";  // 60 frames
+
+Outcome runWithFaults(const FaultPlan& plan, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{"env"};
+  for (const std::string& variable : faultEnvironment(EDGESLAM_FILE_FAULTS, plan)) command.push_back(variable);
+  command.emplace_back(EDGESLAM_PROGRAM);
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return runCommand(command);
+}
+
+class ProgramFaults : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return folder_.path(name); }
+  std::vector<std::string> replay(std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"replay", small, "--output", path("result"), "--drawings", "0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(ProgramFaults, APowerCutWhileTheMapIsSavedLeavesTheMapBefore) {
+  const Camera camera = *openFrameSource(small)->camera();
+  fs::create_directory(path("maps"));
+  const std::string map = path("maps/hall.map");
+  FaultPlan plan;
+  plan.under = path("maps");
+  plan.log = path("log");
+  ASSERT_EQ(runWithFaults(plan, replay({"--map-out", map})).exit_code, 0);
+  const std::string before = fileContent(map), log = fileContent(plan.log);
+  const long steps = std::count(log.begin(), log.end(), '\n');
+  ASSERT_LT(log.find(" write "), log.find(" fsync ")) << log;
+  ASSERT_LT(log.find(" fsync "), log.find(" rename ")) << log;
+  ASSERT_LT(log.find(" rename "), log.rfind(" fsync ")) << log;
+
+  const std::string other = folder_.write("other.yaml", "tracking: {keyframe_distance: 0.9}\n");
+  for (const long step : {steps - 4, steps - 2, steps - 1}) {
+    plan.fault = Fault::cut_within;
+    plan.first = step;
+    const Outcome outcome = runWithFaults(plan, replay({"--map-in", map, "--map-out", map}));
+    EXPECT_EQ(outcome.exit_code, -1) << "step " << step << ": " << outcome.messages;
+    EXPECT_FALSE(loadMap(map, camera).points.empty());
+    EXPECT_TRUE(fileContent(map) == before || step >= steps - 2) << "step " << step;
+  }
+}
+
+TEST_F(ProgramFaults, ARecordingOfARunThatWasCutIsRepeatedAsFarAsItReaches) {
+  std::size_t most = 0;
+  for (const long step : {60, 140, 200}) {
+    const std::string recording = path("recording" + std::to_string(step));
+    FaultPlan plan;
+    plan.under = recording;
+    plan.fault = Fault::cut_within;
+    plan.first = step;
+    const Outcome live = runWithFaults(plan, replay({"--realtime", "--record", recording}));
+    ASSERT_EQ(live.exit_code, -1) << live.messages;
+    const Recording read = readRecording(recording);
+    EXPECT_FALSE(read.decisions.complete);
+    most = std::max(most, read.frames.size());
+    const Outcome again = runProgram({"replay", recording, "--output", path("again"), "--drawings", "0"});
+    EXPECT_EQ(again.exit_code == 2, read.frames.empty()) << again.messages;
+    ASSERT_FALSE(again.failures().empty());
+    const std::string told = again.failures().front();
+    EXPECT_TRUE(told.find("breaks off without the run's end") != std::string::npos ||
+                told.find("torn or damaged") != std::string::npos)
+        << again.messages;
+  }
+  EXPECT_GT(most, 20U);
+}
+
+// From so little memory that the program does not start to enough. Below the first, the loader finds no place for the
+// libraries.
+TEST_F(ProgramFaults, WithoutMemoryEndsWithOneMessage) {
+  int without = 0, with = 0;
+  for (const std::vector<std::string>& how :
+       {std::vector<std::string>{}, {"--realtime", "--pace", "4", "--record", path("recording")}}) {
+    for (int megabytes = 320; megabytes <= 620; megabytes += how.empty() ? 12 : 24) {
+      SCOPED_TRACE(std::to_string(megabytes) + " MiB");
+      fs::remove_all(path("recording"));
+      std::vector<std::string> command{"prlimit", "--as=" + std::to_string(megabytes << 20), EDGESLAM_PROGRAM};
+      for (const std::string& word : replay(how)) command.push_back(word);
+      const Outcome outcome = runCommand(command);
+      if (outcome.exit_code == 127) continue;  // of the loader
+      with += outcome.exit_code == 0 ? 1 : 0;
+      if (outcome.exit_code == 0) continue;
+      ++without;
+      EXPECT_EQ(outcome.exit_code, 1) << outcome.messages;
+      ASSERT_EQ(outcome.failures().size(), 1U) << outcome.messages;
+      EXPECT_NE(outcome.failures()[0].find("out of memory"), std::string::npos) << outcome.messages;
+    }
+  }
+  EXPECT_GT(without, 0);
+  EXPECT_GT(with, 0);
+}
+
+}  // namespace
+}  // namespace edgeslam
