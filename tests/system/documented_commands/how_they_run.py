@@ -50,9 +50,9 @@ INSTEAD = {
         SYNOPSIS, ["edgeslam report before after", "edgeslam report before after result --output three.html",
                    "edgeslam report all --output all.html"]),
     "edgeslam simulate SCENE --output DIR [--frames N] [--seed N] [--fps F] [--width PX] [--height PX] [--fisheye] "
-    "[--exposure MS] [--noise GREY] [--speed FACTOR] [--cover|--shake|--still FIRST:COUNT] [--force]": Instead(
+    "[--exposure MS] [--noise GREY] [--speed FACTOR] [--cover|--shake|--still|--turn FIRST:COUNT] [--force]": Instead(
         SYNOPSIS, [f"edgeslam simulate {scene} --output made --seed 2 --fps 20 {SMALL} --fisheye --exposure 2 --noise 3 "
-                   "--speed 2 --cover 0:1 --shake 1:1 --still 2:1 --force"
+                   "--speed 2 --cover 0:1 --shake 1:1 --still 2:1 --turn 2:1 --force"
                    for scene in ("panels", "panels_textured", "room", "corridor")]),
     "edgeslam calibrate board --columns N --rows N --square LENGTH --output PDF "
     "[--type chessboard|charuco|aprilgrid] [--paper A4]": Instead(
