@@ -37,16 +37,14 @@ make_system() {
     touch "$root.made"
   fi
   mount_all
-  local package=$compiler
-  [[ $suite != bookworm || $compiler != g++-12 ]] || package=g++
   # shellcheck disable=SC2046
-  inside "$root" apt-get install -qq -y --no-install-recommends $(cat "$sources/.ci/packages") ccache "$package" > "$folder/$suite.log" 2>&1 ||
+  inside "$root" apt-get install -qq -y --no-install-recommends $(cat "$sources/.ci/packages") ccache "$compiler" > "$folder/$suite.log" 2>&1 ||
     { tail "$folder/$suite.log"; exit 1; }
 }
 
 build_and_test() {
-  local program=${compiler/clang-/clang++-} at_once=(inside "$root" nice -n 15 env CCACHE_DIR=/ccache CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1)
-  "${at_once[@]}" cmake -S /src -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$program" \
+  local at_once=(inside "$root" nice -n 15 env CCACHE_DIR=/ccache CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1)
+  "${at_once[@]}" cmake -S /src -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="${compiler/clang-/clang++-}" \
     -DCMAKE_CXX_COMPILER_LAUNCHER=ccache > "$folder/$suite-$compiler.log" 2>&1 || { tail -20 "$folder/$suite-$compiler.log"; exit 1; }
   "${at_once[@]}" cmake --build "$build" --parallel 1 ${targets:+--target "${targets[@]}"} -- -k 0 >> "$folder/$suite-$compiler.log" 2>&1 ||
     { grep -E 'FAILED|error:' "$folder/$suite-$compiler.log" | cut -c1-300 | head -40; exit 1; }

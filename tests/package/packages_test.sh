@@ -33,12 +33,12 @@ make_packages() {
   mkdir -p "$folder"
   (cd "$sources" && cmake --preset packages -B "$folder/build") > "$folder/build.log" 2>&1 &&
     cmake --build "$folder/build" --parallel 1 --target edgeslam edgeslam_shared manual_pages >> "$folder/build.log" 2>&1 &&
-    rm -rf "$folder"/*.deb && (cd "$folder/build" && cpack -G DEB -B "$folder") >> "$folder/build.log" 2>&1 ||
+    rm -rf "$folder"/*.{deb,ddeb} && (cd "$folder/build" && cpack -G DEB -B "$folder") >> "$folder/build.log" 2>&1 ||
     { tail -20 "$folder/build.log"; fail "build of the packages"; }
   rm -rf "$folder/_CPack_Packages"
-  ls -l "$folder"/*.deb | awk '{print $5 " bytes", $9}' | sed "s#$folder/##"
-  for package in edgeslam libedgeslam0 libedgeslam-dev edgeslam-dbgsym libedgeslam0-dbgsym; do
-    [[ -n $(compgen -G "$folder/${package}_*_$arch.deb") ]] || fail "no package $package"
+  ls -l "$folder"/*.{deb,ddeb} | awk '{print $5 " bytes", $9}' | sed "s#$folder/##"
+  for package in edgeslam_*.deb libedgeslam0_*.deb libedgeslam-dev_*.deb edgeslam-dbgsym_*.ddeb libedgeslam0-dbgsym_*.ddeb; do
+    [[ -n $(compgen -G "$folder/$package") ]] || fail "no package $package"
   done
   local errors
   errors=$(lintian --tag-display-limit 0 "$folder"/*.deb 2>&1 | tee "$folder/lintian.log" | grep -c '^E:' || true)
@@ -50,7 +50,7 @@ install_program() {
   make_clean_debian "$suite" "$root"
   install systemd
   files > "$folder/before.txt"
-  cp "$folder"/*.deb "$root/tmp/"
+  cp "$folder"/*.{deb,ddeb} "$root/tmp/"
   local packages_before
   packages_before=$(run dpkg-query -W | wc -l)
   install "/tmp/edgeslam_*_$arch.deb"
@@ -98,7 +98,7 @@ build_against_library() {
 
 # In the package of symbols a function of the library has its name, file and line.
 look_at_symbols() {
-  install "/tmp/edgeslam-dbgsym_*.deb /tmp/libedgeslam0-dbgsym_*.deb"
+  run_or_fail "installation of the symbols" sh -c "dpkg -i /tmp/*-dbgsym_*.ddeb"
   local library address place build_id
   for name in /usr/bin/edgeslam "/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)/libedgeslam.so.0"; do
     library=$(run readlink -f "$name")
