@@ -70,8 +70,7 @@ class LiveRun {
   void goOnWith(Map map);
   // Before the start: frames that are asked for are shown there. `looks` must outlive the run.
   void showTo(FrameLooks& looks) { looks_ = &looks; }
-  // Throws std::system_error where the system has no thread for it; the run can only be destroyed then.
-  void start();
+  void start();  // std::system_error where the system has no thread for it; only to be destroyed then
 
   // The capture thread's: fill the slot, then hand it over. Never waits.
   FrameSlot& nextSlot() { return frames_.writing(); }
