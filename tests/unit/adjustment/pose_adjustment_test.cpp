@@ -162,6 +162,34 @@ TEST(PoseAdjustment, CovarianceIsHonest) {
   }
 }
 
+// Along the edge, across it and along the depth's direction each has its own standard deviation.
+TEST(PoseAdjustment, InformationIsThatOfTheMeasurementsCovariance) {
+  Random random(8);
+  for (int run = 0; run < 50; ++run) {
+    Trial trial = makeTrial(random, {/*count=*/1, /*sigma_normal=*/0.4, /*sigma_tangent=*/5});
+    PoseObservation& o = trial.observations.front();
+    o.depth_sigma_px = uniform(random, 0.1, 3);
+    const double angle = uniform(random, -M_PI, M_PI);
+    o.depth_direction = {std::cos(angle), std::sin(angle)};
+    Eigen::Matrix<double, 2, 6> pixel_by_pose;
+    for (int i = 0; i < 6; ++i) {
+      Vector6d step = Vector6d::Zero();
+      step[i] = 1e-6;
+      const auto seen = [&](const Vector6d& by) {
+        return project(trial.camera, retract(trial.truth, by).inverse() * o.point);
+      };
+      pixel_by_pose.col(i) = (seen(step) - seen(-step)) / 2e-6;
+    }
+    const Eigen::Vector2d across = o.measurement.normal, along(-across.y(), across.x());
+    const Eigen::Matrix2d covariance =
+        0.4 * 0.4 * across * across.transpose() + 25 * along * along.transpose() +
+        o.depth_sigma_px * o.depth_sigma_px * o.depth_direction * o.depth_direction.transpose();
+    const Matrix6d expected = pixel_by_pose.transpose() * covariance.inverse() * pixel_by_pose;
+    const Matrix6d information = poseInformation(trial.camera, trial.truth, trial.observations);
+    EXPECT_LT((information - expected).norm(), 1e-4 * expected.norm()) << run;
+  }
+}
+
 TEST(PoseAdjustment, CovarianceCountsUncertainDepths) {
   Random random(6);
   constexpr int kTrials = 300;

@@ -51,6 +51,13 @@ TEST(BlurGate, SuddenFallIsRejectedAndTheNextSharpFramePasses) {
   EXPECT_EQ(gate.rejected_in_a_row, 0);
 }
 
+TEST(BlurGate, OneSharperFrameHardlyRaisesTheBar) {
+  BlurGate gate;
+  for (int frame = 0; frame < 50; ++frame) isBlurred(gate, 1, {});
+  EXPECT_FALSE(isBlurred(gate, 2, {}));
+  EXPECT_FALSE(isBlurred(gate, 0.6, {}));
+}
+
 TEST(BlurGate, FollowsAViewThatGrowsBare) {
   BlurGate gate;
   double value = 1;

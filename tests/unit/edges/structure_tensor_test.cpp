@@ -41,6 +41,16 @@ TEST(StructureTensor, BothEigenvaluesAreLargeAtACorner) {
   EXPECT_GT(tensor.l2, 100);
 }
 
+// A step between columns 20 and 21, whose central differences are at these two.
+TEST(StructureTensor, ItsWindowLiesAroundTheNearestPixel) {
+  cv::Mat step(41, 41, CV_8U, cv::Scalar(50));
+  step.colRange(21, 41).setTo(150);
+  for (const float x : {17.0F, 17.4F, 24.0F, 23.5F}) EXPECT_EQ(structureTensor(step, {x, 20}, 5).l1, 0) << x;
+  for (const float x : {17.5F, 18.0F, 23.0F, 23.4F}) EXPECT_GT(structureTensor(step, {x, 20}, 5).l1, 0) << x;
+  EXPECT_GT(structureTensor(step.t(), {20, 23}, 5).l1, 0);
+  EXPECT_EQ(structureTensor(step.t(), {20, 24}, 5).l1, 0);
+}
+
 TEST(StructureTensor, IsZeroOffTheImageAndOnFlatGround) {
   const cv::Mat texture = renderTexture({60, 60}, 1);
   for (const Eigen::Vector2f& pixel : {Eigen::Vector2f(-40, 20), Eigen::Vector2f(20, 1e9F),

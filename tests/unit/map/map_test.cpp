@@ -49,6 +49,11 @@ TEST(Map, FindsAnObservationByItsPoint) {
   EXPECT_EQ(findObservation(Keyframe(), 0), nullptr);
 }
 
+TEST(Map, TheFirstFreePointIsBeyondAllThatWereSeen) {
+  EXPECT_EQ(firstFreePoint(Map()), 0);
+  EXPECT_EQ(firstFreePoint(threeKeyframes()), 14);
+}
+
 TEST(Map, CountsSharedPointsByHostsAndViewsAndNotTracksWithoutDepth) {
   const Map map = threeKeyframes();
   EXPECT_EQ(sharedPoints(map, 0), (std::vector<int>{0, 2, 1}));
