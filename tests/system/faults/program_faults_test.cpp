@@ -56,7 +56,7 @@ TEST_F(ProgramFaults, APowerCutWhileTheMapIsSavedLeavesTheMapBefore) {
     const Outcome outcome = runWithFaults(plan, replay({"--map-in", map, "--map-out", map}));
     EXPECT_EQ(outcome.exit_code, -1) << "step " << step << ": " << outcome.messages;
     EXPECT_FALSE(loadMap(map, camera).points.empty());
-    EXPECT_EQ(fileContent(map) == before, step < steps - 3) << "step " << step;
+    EXPECT_TRUE(fileContent(map) == before || step == steps - 3) << "step " << step;
   }
 }
 
