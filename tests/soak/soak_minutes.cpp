@@ -58,7 +58,7 @@ std::vector<std::string> soakProblems(const std::vector<SoakMinute>& minutes) {
   for (const SoakMinute& minute : minutes) {
     if (minute.pass >= 1 && minute.pass <= third) early_mb = std::max(early_mb, minute.memory_mb);
     if (minute.pass > last - third) late_mb = std::max(late_mb, minute.memory_mb);
-    if (minute.pass < 1) continue;
+    if (minute.pass % 2 == 0) continue;
     SequencePass& pass = sequences[minute.sequence][minute.pass];
     pass.processor_ms += minute.processor_ms;
     pass.latency_ms += minute.latency_50_ms;
