@@ -11,6 +11,7 @@ namespace edgeslam {
 namespace {
 
 constexpr double most_memory_growth = 1.08, most_memory_growth_mb = 16;
+constexpr std::int64_t fewest_passes_for_memory = 9;
 constexpr double most_processor_growth = 1.5, most_latency_growth = 3;
 
 std::string growth(const std::string& what, double from, double to) {
@@ -64,7 +65,7 @@ std::vector<std::string> soakProblems(const std::vector<SoakMinute>& minutes) {
     pass.latency_ms += minute.latency_50_ms;
     ++pass.minutes;
   }
-  if (late_mb > most_memory_growth * early_mb + most_memory_growth_mb) {
+  if (last >= fewest_passes_for_memory && late_mb > most_memory_growth * early_mb + most_memory_growth_mb) {
     problems.push_back(growth("memory [MB]", early_mb, late_mb));
   }
   for (const auto& [name, passes] : sequences) {

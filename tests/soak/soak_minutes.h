@@ -31,7 +31,8 @@ double residentMegabytes();
 // What did not stay as it was, a line each. The first pass fills caches and is not looked at. From then on:
 // - memory: the most in the last third of the passes is at most 8 % and 16 MB over the most in the first third. What a
 //   run keeps is bounded by the configuration (culling.most_keyframes, culling.most_megabytes), so after a pass over
-//   all sequences there is nothing that may still grow;
+//   all sequences there is nothing that may still grow. Of fewer than 10 passes it is not judged: runs with and without
+//   a map take turns, and what the allocator keeps between them differs;
 // - processor time a frame of each sequence, in the last of the odd passes: at most 1.5 times that in the first of them
 //   (even ones start without a map, and so do something else);
 // - median latency likewise at most 3 times: it is of the wall clock, and the machine may be busy.
