@@ -117,9 +117,10 @@ void LockstepRun::draw(const cv::Mat& grey, const FrameRecord& record) {
   const Tracker& tracker = tracking_.tracker();
   const EdgeMap no_edges;
   const EdgeMap* edges = tracker.latestEdges();
+  const std::vector<Track> none;
   std::vector<DrawnTrack> tracks;
-  for (const Track& track : tracker.tracks()) {
-    if (!tracker.latestIsTracked()) break;  // they are of an earlier frame
+  // Where this frame was lost, the tracker's are of an earlier one.
+  for (const Track& track : tracker.latestIsTracked() ? tracker.tracks() : none) {
     DrawnTrack drawn;
     drawn.pixel = track.pixel;
     drawn.keyframe_pixel = track.last_keyframe_pixel;

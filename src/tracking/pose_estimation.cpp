@@ -9,7 +9,7 @@ namespace {
 
 // Where fewer of the map points in view agree, something that moves may have drawn the pose to itself ...
 constexpr double most_of_them = 0.7;
-// ... and another pose is right if so many times as many agree with it. With the same points mostly, both are.
+// ... and another pose is taken if so many times as many agree with it; where hardly more do, it is the same one.
 constexpr double clearly_more = 1.2;
 
 // What is seen of a map point, with the uncertainty that its depth adds along the epipolar direction.
