@@ -122,7 +122,6 @@ class Tracker {
 
   // The last tracked frame, for drawings.
   const std::vector<Track>& tracks() const { return last_.tracks; }
-  const EdgeMap& edges() const { return *last_.edges; }
   const MapView& view() const { return view_; }
 
  private:
