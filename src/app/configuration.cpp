@@ -1,6 +1,5 @@
 #include "app/configuration.h"
 
-#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -9,10 +8,10 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "app/configuration_camera.h"
 #include "app/configuration_capture.h"
+#include "app/configuration_document.h"
 #include "app/configuration_keys.h"
 #include "app/configuration_service.h"
 #include "app/configuration_suggestion.h"
@@ -22,11 +21,6 @@ namespace {
 
 constexpr std::size_t largest_file = 1 << 20;  // [bytes]
 constexpr char include_key[] = "include";
-
-struct Problem {
-  int line = -1;  // from 0; negative where the problem has no line
-  std::string text;
-};
 
 std::string readText(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -42,7 +36,7 @@ std::string readText(const std::string& path) {
 // Reads one file's document; all that is wrong goes to `problems`.
 class Reader {
  public:
-  Reader(Configuration& configuration, std::vector<Problem>& problems)
+  Reader(Configuration& configuration, std::vector<ConfigurationProblem>& problems)
       : configuration_(configuration), problems_(problems), keys_(configurationKeys(configuration.settings)) {
     for (const ConfigurationKey& key : keys_) {
       sections_.insert(key.path.substr(0, key.path.find('.')));
@@ -135,13 +129,13 @@ class Reader {
   }
 
   Configuration& configuration_;
-  std::vector<Problem>& problems_;
+  std::vector<ConfigurationProblem>& problems_;
   std::vector<ConfigurationKey> keys_;
   std::vector<std::string> names_;  // of all keys, with their section
   std::set<std::string> sections_;
 };
 
-std::string formatted(const Problem& problem, const std::string& path) {
+std::string formatted(const ConfigurationProblem& problem, const std::string& path) {
   const std::string line = problem.line < 0 ? "" : ":" + std::to_string(problem.line + 1);
   return InputError::oneLine(path + line + ": " + problem.text);
 }
@@ -150,49 +144,23 @@ void readFile(const std::string& path, bool may_include, Configuration& configur
               std::vector<std::string>& problems);
 
 // What is wrong with the key itself; of the file it names, to `problems`.
-std::optional<Problem> readIncluded(const YAML::Node& node, bool may_include, const std::string& path,
-                                    Configuration& configuration, std::vector<std::string>& problems) {
+std::optional<ConfigurationProblem> readIncluded(const YAML::Node& node, bool may_include, const std::string& path,
+                                                 Configuration& configuration, std::vector<std::string>& problems) {
   const int line = node.Mark().line;
-  if (!may_include) return Problem{line, "include: an included file includes no other"};
-  if (!node.IsScalar() || node.Scalar().empty()) return Problem{line, "include: the path of a file is expected"};
+  if (!may_include) return ConfigurationProblem{line, "include: an included file includes no other"};
+  if (!node.IsScalar() || node.Scalar().empty())
+    return ConfigurationProblem{line, "include: the path of a file is expected"};
   const std::filesystem::path included = std::filesystem::path(path).parent_path() / node.Scalar();
   std::error_code error;
   if (std::filesystem::exists(included, error) && !std::filesystem::is_regular_file(included, error)) {
-    return Problem{line, "include: " + node.Scalar() + " is no file"};  // a pipe would be waited for
+    return ConfigurationProblem{line, "include: " + node.Scalar() + " is no file"};  // a pipe would be waited for
   }
   readFile(included.string(), false, configuration, problems);
   return std::nullopt;
 }
 
-// Where each document begins; what is in them is left to others.
-struct DocumentStarts : YAML::EventHandler {
-  std::vector<YAML::Mark> starts;
-
-  void OnDocumentStart(const YAML::Mark& mark) override { starts.push_back(mark); }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
-};
-
-// YAML::LoadAll would read a text that begins with a comma as empty documents without end.
-std::optional<Problem> secondDocument(const std::string& text) {
-  std::istringstream stream(text);
-  YAML::Parser parser(stream);
-  DocumentStarts documents;
-  if (!parser.HandleNextDocument(documents) || !parser.HandleNextDocument(documents)) return std::nullopt;
-  const YAML::Mark& first = documents.starts.front();
-  const YAML::Mark& second = documents.starts.back();
-  if (second.pos == first.pos) return Problem{first.line, "is not YAML: a key is expected here"};
-  return Problem{second.line, "a second document; only one is expected"};
-}
-
-void readDocuments(const std::string& path, bool may_include, Configuration& configuration, std::vector<Problem>& found,
-                   std::vector<std::string>& problems) {
+void readDocuments(const std::string& path, bool may_include, Configuration& configuration,
+                   std::vector<ConfigurationProblem>& found, std::vector<std::string>& problems) {
   try {
     const std::string text = readText(path);
     if (const auto second = secondDocument(text)) found.push_back(*second);
@@ -212,15 +180,16 @@ void readDocuments(const std::string& path, bool may_include, Configuration& con
 void readFile(const std::string& path, bool may_include, Configuration& configuration,
               std::vector<std::string>& problems) {
   configuration.source = path;
-  std::vector<Problem> found;
+  std::vector<ConfigurationProblem> found;
   try {
     readDocuments(path, may_include, configuration, found, problems);
   } catch (const InputError& error) {
     problems.emplace_back(error.what());
     return;
   }
-  std::stable_sort(found.begin(), found.end(), [](const Problem& a, const Problem& b) { return a.line < b.line; });
-  for (const Problem& problem : found) problems.push_back(formatted(problem, path));
+  std::stable_sort(found.begin(), found.end(),
+                   [](const ConfigurationProblem& a, const ConfigurationProblem& b) { return a.line < b.line; });
+  for (const ConfigurationProblem& problem : found) problems.push_back(formatted(problem, path));
 }
 
 void appendSettings(std::string& text, Settings settings, bool documented) {

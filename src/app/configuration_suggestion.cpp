@@ -2,29 +2,35 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace edgeslam {
 namespace {
 
-// Damerau-Levenshtein distance (optimal string alignment).
-int editDistance(const std::string& a, const std::string& b) {
-  const std::size_t columns = b.size() + 1;
-  std::vector<int> distance((a.size() + 1) * columns);
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      int& here = distance[i * columns + j];
-      if (i == 0 || j == 0) {
-        here = static_cast<int>(i + j);
-        continue;
-      }
-      const int replaced = distance[(i - 1) * columns + j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      here = std::min({replaced, distance[(i - 1) * columns + j] + 1, distance[i * columns + j - 1] + 1});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        here = std::min(here, distance[(i - 2) * columns + j - 2] + 1);
-      }
+// Damerau-Levenshtein distance (optimal string alignment) where it is under `most`, or else `most`. Only what lies near
+// the diagonal can be under it.
+int editDistance(const std::string& a, const std::string& b, int most) {
+  const int rows = static_cast<int>(a.size()), columns = static_cast<int>(b.size());
+  if (std::abs(rows - columns) >= most) return most;
+  std::vector<int> before_last, last(b.size() + 1, most), here(b.size() + 1, most);
+  for (int j = 0; j <= std::min(columns, most); ++j) last[static_cast<std::size_t>(j)] = j;
+  for (int i = 1; i <= rows; ++i) {
+    std::fill(here.begin(), here.end(), most);
+    if (i < most) here[0] = i;
+    int least = here[0];
+    for (int j = std::max(1, i - most); j <= std::min(columns, i + most); ++j) {
+      const auto at = static_cast<std::size_t>(j), row = static_cast<std::size_t>(i);
+      const int replaced = last[at - 1] + (a[row - 1] == b[at - 1] ? 0 : 1);
+      here[at] = std::min({replaced, last[at] + 1, here[at - 1] + 1, most});
+      const bool is_swapped = i > 1 && j > 1 && a[row - 1] == b[at - 2] && a[row - 2] == b[at - 1];
+      if (is_swapped) here[at] = std::min(here[at], before_last[at - 2] + 1);
+      least = std::min(least, here[at]);
     }
+    if (least == most) return most;
+    before_last = last;
+    std::swap(last, here);
   }
-  return distance.back();
+  return last.back();
 }
 
 std::string lastName(const std::string& key) { return key.substr(key.rfind('.') + 1); }
@@ -38,9 +44,7 @@ std::string closestKey(const std::string& wrong, const std::vector<std::string>&
   int closest_distance = std::max(2, static_cast<int>(lastName(wrong).size()) / 3) + 1;
   for (const std::string& key : known) {
     const bool same_name = lastName(wrong) == lastName(key);
-    const int longer = std::abs(static_cast<int>(wrong.size()) - static_cast<int>(key.size()));
-    if (!same_name && longer >= closest_distance) continue;
-    const int distance = same_name ? 1 : editDistance(wrong, key);
+    const int distance = same_name ? 1 : editDistance(wrong, key, closest_distance);
     if (distance < closest_distance) {
       closest_distance = distance;
       closest = key;

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dataset/image_header.h"
+
 namespace edgeslam {
 namespace {
 
@@ -64,6 +66,12 @@ bool jpegIsWhole(const Bytes& bytes) {
   return false;
 }
 
+// A decoder would make room for what a few bytes claim.
+bool isTooLarge(const ClaimedSize& size) {
+  constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
+  return std::max(size.width, size.height) > most_pixels || size.width * size.height > most_pixels;
+}
+
 std::string sizeText(cv::Size size) { return std::to_string(size.width) + " x " + std::to_string(size.height); }
 
 }  // namespace
@@ -81,7 +89,10 @@ DecodedImage readGreyImage(const std::string& path) {
   if (!file || bytes.size() != size) return {{}, path + ": cannot be read"};
   if (bytes.empty()) return {{}, path + ": is empty"};
   if (!isImageFormat(bytes)) return {{}, path + ": is no PNG, JPEG, BMP, PGM, PPM, TIFF or WebP image"};
+  const auto size_claimed = claimedSize({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  if (size_claimed && isTooLarge(*size_claimed)) return {{}, path + ": too large for an image"};
   if (isJpeg(bytes) && !jpegIsWhole(bytes)) return {{}, path + ": is cut off"};
+  if (!size_claimed) return {{}, path + ": is no image that can be decoded, or is damaged"};
 
   cv::Mat decoded;
   try {

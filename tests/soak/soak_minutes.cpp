@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <map>
 
 namespace edgeslam {
@@ -25,6 +26,29 @@ struct SequencePass {
   double processor_ms = 0, latency_ms = 0;
   int minutes = 0;
 };
+using Passes = std::map<std::int64_t, SequencePass>;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Of the passes from `first` to `final`, or the one nearest to them: a single one tells little, since where the map
+// was left by the pass before decides how much there is to do.
+SequencePass medianPass(const Passes& passes, std::int64_t first, std::int64_t final) {
+  auto begin = passes.lower_bound(first), end = passes.upper_bound(final);
+  if (begin == end) {
+    if (begin == passes.end()) --begin;
+    end = std::next(begin);
+  }
+  std::vector<double> processor_ms, latency_ms;
+  for (auto pass = begin; pass != end; ++pass) {
+    processor_ms.push_back(pass->second.processor_ms / pass->second.minutes);
+    latency_ms.push_back(pass->second.latency_ms / pass->second.minutes);
+  }
+  return {median(processor_ms), median(latency_ms), 1};
+}
 
 }  // namespace
 
@@ -55,7 +79,7 @@ std::vector<std::string> soakProblems(const std::vector<SoakMinute>& minutes) {
   if (minutes.empty() || minutes.back().pass < 2) return {"too short to tell: three passes are needed"};
   const std::int64_t last = minutes.back().pass, third = std::max<std::int64_t>(1, last / 3);
   double early_mb = 0, late_mb = 0;
-  std::map<std::string, std::map<std::int64_t, SequencePass>> sequences;
+  std::map<std::string, Passes> sequences;
   for (const SoakMinute& minute : minutes) {
     if (minute.pass >= 1 && minute.pass <= third) early_mb = std::max(early_mb, minute.memory_mb);
     if (minute.pass > last - third) late_mb = std::max(late_mb, minute.memory_mb);
@@ -69,14 +93,12 @@ std::vector<std::string> soakProblems(const std::vector<SoakMinute>& minutes) {
     problems.push_back(growth("memory [MB]", early_mb, late_mb));
   }
   for (const auto& [name, passes] : sequences) {
-    const SequencePass &first = passes.begin()->second, &final = passes.rbegin()->second;
-    const double processor_before = first.processor_ms / first.minutes, processor = final.processor_ms / final.minutes;
-    const double latency_before = first.latency_ms / first.minutes, latency = final.latency_ms / final.minutes;
-    if (processor > most_processor_growth * processor_before) {
-      problems.push_back(growth(name + ": processor time a frame [ms]", processor_before, processor));
+    const SequencePass early = medianPass(passes, 0, third), late = medianPass(passes, last - third + 1, last);
+    if (late.processor_ms > most_processor_growth * early.processor_ms) {
+      problems.push_back(growth(name + ": processor time a frame [ms]", early.processor_ms, late.processor_ms));
     }
-    if (latency > most_latency_growth * latency_before) {
-      problems.push_back(growth(name + ": median latency [ms]", latency_before, latency));
+    if (late.latency_ms > most_latency_growth * early.latency_ms) {
+      problems.push_back(growth(name + ": median latency [ms]", early.latency_ms, late.latency_ms));
     }
   }
   return problems;

@@ -33,8 +33,8 @@ double residentMegabytes();
 //   run keeps is bounded by the configuration (culling.most_keyframes, culling.most_megabytes), so after a pass over
 //   all sequences there is nothing that may still grow. Of fewer than 10 passes it is not judged: runs with and without
 //   a map take turns, and what the allocator keeps between them differs;
-// - processor time a frame of each sequence, in the last of the odd passes: at most 1.5 times that in the first of them
-//   (even ones start without a map, and so do something else);
+// - processor time a frame of each sequence, the median of the odd passes in the last third: at most 1.5 times that in
+//   the first third (even ones start without a map, and so do something else);
 // - median latency likewise at most 3 times: it is of the wall clock, and the machine may be busy.
 std::vector<std::string> soakProblems(const std::vector<SoakMinute>& minutes);
 

@@ -50,5 +50,14 @@ TEST(SoakMinutes, WhatGetsSlowerIsSeenInItsSequence) {
   EXPECT_EQ(problems[1].rfind("room: median latency", 0), 0U) << problems[1];
 }
 
+// One pass that costs more is no growth.
+TEST(SoakMinutes, AScatterIsNotGrowth) {
+  std::vector<SoakMinute> minutes = flat();
+  for (SoakMinute& minute : minutes) {
+    if (minute.pass == 11 || minute.pass == 3) minute.processor_ms *= 1.9;
+  }
+  EXPECT_TRUE(soakProblems(minutes).empty());
+}
+
 }  // namespace
 }  // namespace edgeslam

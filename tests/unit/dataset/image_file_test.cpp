@@ -84,6 +84,26 @@ TEST(ImageFile, WhatIsNoImageIsAProblem) {
   EXPECT_NE(readGreyImage(folder.write("huge.pgm", "P5 2000000000 2000000000 255\n")).problem, "");
 }
 
+// 20 bytes to 400 that would cost gigabytes and seconds.
+TEST(ImageFile, ASmallFileThatClaimsAHugeImageIsRefusedBeforeItIsDecoded) {
+  using namespace std::string_literals;
+  struct Claim {
+    std::string extension, size, huge;
+  };
+  const TemporaryFolder folder;
+  for (const auto& [extension, size, huge] :
+       {Claim{".png", "\0\0\0\x40\0\0\0\x30"s, "\0\1\0\0\0\1\0\0"s}, Claim{".jpg", "\0\x30\0\x40"s, "\xFF\0\xFF\0"s},
+        Claim{".bmp", "\x40\0\0\0\xD0\xFF\xFF\xFF"s, "\0\0\1\0\0\0\xFF\xFF"s}, Claim{".pgm", "64 48", "60000 60000"},
+        Claim{".webp", "\x40\0\x30\0"s, "\xFF\x3F\xFF\x3F"s}}) {
+    std::string bytes = encoded(extension, ramp(), {cv::IMWRITE_WEBP_QUALITY, 50});
+    const std::size_t at = bytes.find(size);
+    ASSERT_LT(at, bytes.size()) << extension;
+    bytes.replace(at, size.size(), huge);
+    const std::string path = folder.write("huge" + extension, bytes);
+    EXPECT_EQ(readGreyImage(path).problem, path + ": too large for an image");
+  }
+}
+
 // OpenCV takes a file with DTED at byte 140 for a map's tile and has GDAL open it, which finds this format and would
 // follow it to other files and hosts.
 TEST(ImageFile, FormatsThatNameOtherFilesAreNoImages) {
