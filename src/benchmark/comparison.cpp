@@ -7,10 +7,10 @@
 
 #include "benchmark/figure_changes.h"
 #include "benchmark/page_assets.h"
+#include "dataset/display_frame.h"
 #include "dataset/evaluation.h"
 #include "dataset/page_template.h"
 #include "dataset/report_assets.h"
-#include "dataset/report_data.h"
 
 namespace edgeslam {
 namespace {

@@ -61,18 +61,6 @@ std::optional<PublishedErrors> publishedFor(const SetRun& run) {
   return published;
 }
 
-ordered_json publishedJson(const SetRun& run) {
-  const std::optional<PublishedErrors> published = publishedFor(run);
-  if (!published) return nullptr;
-  return {{"sequence", published->sequence},
-          {"errors_cm",
-           {{"Edge SLAM (paper)", published->edge_slam},
-            {"ORB-SLAM", published->orb_slam},
-            {"LSD-SLAM", published->lsd_slam},
-            {"Edge VO", published->edge_vo},
-            {"PL-SLAM", published->pl_slam}}}};
-}
-
 std::string fixed(const char* format, double value) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), format, value);
@@ -143,7 +131,7 @@ ordered_json setData(const RunSet& set) {
                     {"link", run.link},
                     {"failed", run.failed},
                     {"message", run.message},
-                    {"published", publishedJson(run)},
+                    {"published", publishedJson(publishedFor(run))},
                     {"cpu_s", optionalJson(run.cpu_s)},
                     {"peak_mib", optionalJson(run.peak_mib)},
                     {"figures", run.figures ? figuresJson(*run.figures) : ordered_json()}});

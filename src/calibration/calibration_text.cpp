@@ -1,9 +1,10 @@
 #include "calibration/calibration_text.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <vector>
+
+#include "edgeslam/input_error.h"
 
 namespace edgeslam {
 namespace {
@@ -42,17 +43,12 @@ const char* modelName(const Camera& camera) {
 }
 
 // Control characters would end a comment.
-std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 32; }, ' ');
-  return text;
-}
-
 }  // namespace
 
 std::string calibrationFileText(const Calibration& calibration, const Board& board, const std::string& source) {
   const Camera& camera = calibration.camera;
-  std::string text = "# made by edgeslam calibrate with " + boardText(board) + " from " + oneLine(source) + "\n";
+  std::string text =
+      "# made by edgeslam calibrate with " + boardText(board) + " from " + InputError::oneLine(source) + "\n";
   text += formatted("# %d views, reprojection error %.3f px; %d views held back: %.3f px\n", calibration.views,
                     calibration.rms_px, calibration.held_back_views, calibration.held_back_rms_px);
   text += std::string("model: ") + modelName(camera) + "\nwidth: " + std::to_string(camera.width) +

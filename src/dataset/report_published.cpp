@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 namespace edgeslam {
@@ -42,6 +43,17 @@ std::optional<PublishedErrors> publishedErrors(const std::string& sequence) {
                                   [&name](const PublishedErrors& row) { return row.sequence == name; });
   if (found == published.end()) return std::nullopt;
   return *found;
+}
+
+nlohmann::ordered_json publishedJson(const std::optional<PublishedErrors>& published) {
+  if (!published) return nullptr;
+  return {{"sequence", published->sequence},
+          {"errors_cm",
+           {{"Edge SLAM (paper)", published->edge_slam},
+            {"ORB-SLAM", published->orb_slam},
+            {"LSD-SLAM", published->lsd_slam},
+            {"Edge VO", published->edge_vo},
+            {"PL-SLAM", published->pl_slam}}}};
 }
 
 }  // namespace edgeslam

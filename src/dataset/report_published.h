@@ -2,6 +2,7 @@
 // 3).
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -20,5 +21,8 @@ std::string shortSequenceName(std::string name);
 // By the sequence's short name ("fr2_desk", "office0"), its full one ("rgbd_dataset_freiburg2_desk",
 // "office_traj0_frei_png") or a path or archive of that name. Nothing for a sequence that is not the paper's.
 std::optional<PublishedErrors> publishedErrors(const std::string& sequence);
+
+// For the pages; null for nothing.
+nlohmann::ordered_json publishedJson(const std::optional<PublishedErrors>& published);
 
 }  // namespace edgeslam

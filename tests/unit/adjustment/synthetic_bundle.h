@@ -101,4 +101,24 @@ inline double largestDepthError(const BundleProblem& a, const BundleProblem& b) 
   return largest;
 }
 
+inline bool sameBytes(const Pose& a, const Pose& b) {
+  return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
+}
+
+inline bool sameBytes(const BundleProblem& a, const BundleProblem& b) {
+  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
+    if (!sameBytes(a.cameras[i].world_T_camera, b.cameras[i].world_T_camera)) return false;
+  }
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    if (a.points[i].inverse_depth != b.points[i].inverse_depth) return false;
+  }
+  return true;
+}
+
+inline BundleOptions manyIterations() {
+  BundleOptions options;
+  options.iterations = 50;
+  return options;
+}
+
 }  // namespace edgeslam::test

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "dataset/display_frame.h"
 #include "dataset/report_assets.h"
 #include "dataset/report_data.h"
 #include "dataset/report_map.h"
