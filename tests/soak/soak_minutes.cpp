@@ -28,8 +28,9 @@ struct SequencePass {
 };
 using Passes = std::map<std::int64_t, SequencePass>;
 
+// Of an even number, the lower one.
 double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
