@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,7 +15,7 @@
 #include "app/configuration_document.h"
 #include "app/configuration_keys.h"
 #include "app/configuration_service.h"
-#include "app/configuration_suggestion.h"
+#include "dataset/key_suggestion.h"
 
 namespace edgeslam {
 namespace {
@@ -25,10 +26,13 @@ constexpr char include_key[] = "include";
 std::string readText(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be opened");
-  std::string text(largest_file + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad() || (file.gcount() == 0 && !file.eof())) throw InputError(path + ": cannot be read (a folder?)");
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  std::string text;
+  std::array<char, 4096> block{};
+  while (file && text.size() <= largest_file) {
+    file.read(block.data(), block.size());
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  if (file.bad() || (text.empty() && !file.eof())) throw InputError(path + ": cannot be read (a folder?)");
   if (text.size() > largest_file) throw InputError(path + ": over 1 MiB, so it is no configuration");
   return text;
 }

@@ -5,46 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 #include <optional>
 #include <vector>
 
+#include "dataset/key_suggestion.h"
 #include "dataset/text_file.h"
 #include "edgeslam/input_error.h"
 #include "map/map_check.h"
 
 namespace edgeslam {
 namespace {
-
-// Number of letters to insert, delete or replace (Levenshtein 1966).
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
-
-// The key of `known` that was probably meant, or an empty text.
-std::string closeKey(const std::string& key, const std::vector<std::string>& known) {
-  std::string best;
-  std::size_t best_distance = key.size() <= 3 ? 2 : 3;
-  for (const std::string& candidate : known) {
-    const std::size_t distance = editDistance(key.substr(0, 64), candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
-}
 
 // One map of the file, with what its messages need.
 class Section {
@@ -66,14 +36,14 @@ class Section {
     for (const auto& entry : node_) {
       const std::string& key = entry.first.Scalar();
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      const std::string meant = closeKey(key, known);
+      const std::string meant = closestKey(key, known);
       fail(entry.first, "unknown key '" + key + "'" + (meant.empty() ? "" : "; is '" + meant + "' meant?"));
     }
   }
 
   YAML::Node at(const std::string& key) const {
     if (has(key)) return node_[key];
-    const std::string similar = closeKey(key, keys_);
+    const std::string similar = closestKey(key, keys_);
     throw InputError(path_ + ": the key '" + key + "' is missing" +
                      (similar.empty() ? "" : "; is '" + similar + "' it, misspelt?"));
   }

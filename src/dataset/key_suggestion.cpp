@@ -1,4 +1,4 @@
-#include "app/configuration_suggestion.h"
+#include "dataset/key_suggestion.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -41,7 +41,9 @@ std::string closestKey(const std::string& wrong, const std::vector<std::string>&
   constexpr std::size_t longest = 200;  // nobody's slip of the pen, and the distance is quadratic
   if (wrong.size() > longest) return "";
   std::string closest;
-  int closest_distance = std::max(2, static_cast<int>(lastName(wrong).size()) / 3) + 1;
+  const int letters = static_cast<int>(lastName(wrong).size());
+  const int most_edits = letters <= 3 ? 1 : std::max(2, letters / 3);
+  int closest_distance = most_edits + 1;
   for (const std::string& key : known) {
     const bool same_name = lastName(wrong) == lastName(key);
     const int distance = same_name ? 1 : editDistance(wrong, key, closest_distance);

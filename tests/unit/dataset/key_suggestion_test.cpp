@@ -1,4 +1,4 @@
-#include "app/configuration_suggestion.h"
+#include "dataset/key_suggestion.h"
 
 #include <gtest/gtest.h>
 
@@ -58,11 +58,13 @@ TEST(ClosestKey, IsTheOneOfTheFewestEdits) {
     std::vector<int> distances;
     for (const std::string& known_word : words) distances.push_back(plainDistance(wrong, known_word));
     const auto nearest = std::min_element(distances.begin(), distances.end());
-    const std::string expected = *nearest <= 2 ? words[static_cast<std::size_t>(nearest - distances.begin())] : "";
+    const int most_edits = wrong.size() <= 3 ? 1 : 2;
+    const std::string expected =
+        *nearest <= most_edits ? words[static_cast<std::size_t>(nearest - distances.begin())] : "";
     EXPECT_EQ(closestKey(wrong, words), expected) << wrong;
     found += expected.empty() ? 0 : 1;
   }
-  EXPECT_GT(found, 100);
+  EXPECT_GT(found, 50);
   EXPECT_LT(found, 290);
 }
 
