@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -16,11 +15,11 @@
 #include "app/configuration.h"
 #include "app/frame_problem.h"
 #include "app/live_replay.h"
+#include "app/replay_outcome.h"
+#include "app/replay_progress.h"
 #include "app/run_publisher.h"
-#include "dataset/evaluation.h"
 #include "dataset/frame_source.h"
 #include "dataset/recording_source.h"
-#include "dataset/report.h"
 #include "dataset/run_files.h"
 #include "dataset/saved_map.h"
 #include "pipeline/lockstep_run.h"
@@ -38,43 +37,6 @@ struct ReplayArguments {
   double pace = 1;
   std::string record;
   int drawings = 12;
-};
-
-// "frame 120 of 780, tracking, 3.1 x real time": rewritten in place on a terminal, a line every ten seconds elsewhere.
-class Progress {
- public:
-  explicit Progress(std::int64_t total)
-      : total_(total), terminal_(isatty(STDERR_FILENO) == 1), start_(now()), last_(start_) {}
-
-  template <typename Frame>
-  void show(const Frame& frame, std::int64_t count, double sequence_s) {
-    const double elapsed = now() - last_;
-    if (elapsed < (terminal_ ? 0.1 : 10.0)) return;
-    last_ = now();
-    std::string line = "frame " + std::to_string(count) + (total_ > 0 ? " of " + std::to_string(total_) : "") + ", " +
-                       stateName(frame.state) + (frame.reason.empty() ? "" : " (" + frame.reason + ")");
-    char speed[48];
-    std::snprintf(speed, sizeof(speed), ", %.1f x real time", sequence_s / (last_ - start_));
-    line += speed;
-    if (terminal_) {
-      std::cerr << "\r\033[K" << line << std::flush;
-    } else {
-      std::cerr << line << "\n";
-    }
-  }
-
-  void end() const {
-    if (terminal_) std::cerr << "\r\033[K" << std::flush;
-  }
-
- private:
-  static double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  }
-
-  std::int64_t total_;
-  bool terminal_;
-  double start_, last_;
 };
 
 Camera cameraOf(const FrameSource& source, const Configuration& configuration, const std::string& input) {
@@ -109,13 +71,13 @@ RunDescription describe(const ReplayArguments& arguments, const Configuration& c
   return description;
 }
 
-void tellSkipped(std::int64_t index, const std::string& problem, const Progress& progress) {
+void tellSkipped(std::int64_t index, const std::string& problem, const ReplayProgress& progress) {
   progress.end();
   std::cerr << "edgeslam: frame " << index << " skipped: " << problem << "\n";
 }
 
 void processAll(FrameSource& source, const Camera& camera, LockstepRun& run) {
-  Progress progress(source.size());
+  ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
     if (count++ == 0) first_ns = frame->time_ns;
@@ -176,7 +138,7 @@ Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Confi
   replay.record_folder = arguments.record;
   replay.pace = arguments.pace;
   replay.description = {camera, formatConfiguration(configuration), EDGESLAM_VERSION};
-  Progress progress(source.size());
+  ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   replay.progress = [&](const FrameResult& frame, const std::string& problem) {
     if (count++ == 0) first_ns = frame.time_ns;
@@ -199,50 +161,6 @@ void saveMapOf(const Map& map, const Camera& camera, const std::string& path) {
     std::cerr << "edgeslam: " << path << " is not written: no map came to stand\n";
   } else {
     saveMap(path, camera, map);
-  }
-}
-
-// What a person wants to know first.
-void tell(const RunResult& result, const std::optional<Trajectory>& ground_truth, const std::string& output) {
-  const auto& frames = result.frames;
-  std::size_t posed = 0, first = frames.size();
-  Trajectory estimate;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (!frames[i].has_final_pose) continue;
-    first = std::min(first, i);
-    ++posed;
-    estimate.push_back({frames[i].time_ns, frames[i].final_world_T_camera});
-  }
-  const double seconds =
-      frames.empty() ? 0 : static_cast<double>(frames.back().time_ns - frames.front().time_ns) * 1e-9;
-  std::printf("%zu frames (%.1f s) in %.1f s: %.2f x real time\n", frames.size(), seconds, result.wall_s,
-              seconds / std::max(1e-9, result.wall_s));
-  if (result.unreadable_frames > 0)
-    std::printf("%lld frames could not be read and were skipped\n", static_cast<long long>(result.unreadable_frames));
-  if (result.dropped_frames > 0)
-    std::printf("%lld frames were dropped, newer ones being there\n", static_cast<long long>(result.dropped_frames));
-  if (posed == 0) {
-    std::printf("no pose: %s\n", frames.empty() ? "no frame" : frames.back().reason.c_str());
-    return;
-  }
-  std::printf("map started by %s\n", result.initialisation.c_str());
-  std::printf("poses for %zu frames, %.1f %% from the first pose on; %zu keyframes, %zu map points\n", posed,
-              100.0 * static_cast<double>(posed) / static_cast<double>(frames.size() - first), result.keyframes.size(),
-              result.map_points.size());
-  for (const std::string& event : result.events) std::printf("%s\n", event.c_str());
-  if (ground_truth) {
-    try {
-      const AbsoluteError error = absoluteError(estimate, *ground_truth, Alignment::similarity);
-      std::printf("absolute trajectory error %.2f cm (RMSE of %d poses after similarity alignment)\n",
-                  100 * error.translation.rmse, error.pairs);
-    } catch (const InputError& problem) {
-      std::printf("no error figure: %s\n", problem.what());
-    }
-  }
-  if (reportsAreBuiltIn()) {
-    std::printf("%s/report.html shows it all\n", output.c_str());
-  } else {
-    std::printf("results are in %s; this build makes no report.html\n", output.c_str());
   }
 }
 
@@ -298,7 +216,7 @@ int runReplay(const ReplayArguments& arguments) {
     throw InputError(arguments.input + ": not one frame could be read");
   }
   writeRunFiles(arguments.output, result, describe(arguments, configuration), ground_truth);
-  tell(result, ground_truth, arguments.output);
+  tellOutcome(result, ground_truth, arguments.output);
   // Last: where the map cannot be written, the results are there all the same.
   if (!arguments.map_out.empty()) saveMapOf(replayed.map, camera, arguments.map_out);
   const bool any_pose = std::any_of(result.frames.begin(), result.frames.end(),
