@@ -97,6 +97,43 @@ TEST_F(DiskOfADaemon, WhereSlowCostsFramesOfTheRecordingAndNoPoses) {
   EXPECT_FALSE(loadMap(map_, *openFrameSource(source_)->camera()).points.empty());
 }
 
+// Commands that need it, too.
+TEST_F(DiskOfADaemon, WhereStuckCostsNoPoses) {
+  FaultPlan plan;
+  plan.under = disk_;
+  plan.fault = Fault::stuck;
+  plan.while_exists = broken_;
+  const auto daemon = startFaulty(
+      plan, {"--config", configure("recording: {folder: " + recordings_ + ", from_start: true}\n"), "--map-out", map_});
+  ASSERT_TRUE(isTracking()) << daemon->said();
+  const std::string recording = std::filesystem::directory_iterator(recordings_)->path().string();
+  ASSERT_TRUE(hasRecorded(recording, 10)) << daemon->said();
+
+  folder_.write("broken", "");
+  daemon->send(SIGHUP);
+  EXPECT_TRUE(goesOn()) << daemon->said();
+  const command_answer_t reset = robot_->ask(command_t::RESET);
+  EXPECT_TRUE(reset.accepted) << reset.message;
+  EXPECT_EQ(daemon->times("no recording: " + recordings_ + ": the disk does not answer"), 1) << daemon->said();
+  EXPECT_EQ(daemon->times("begun anew"), 1) << "sent again, it is done once: " << daemon->said();
+  EXPECT_TRUE(tellsRecording(false)) << daemon->said();
+  const command_answer_t refused = robot_->ask(command_t::START_RECORDING);
+  EXPECT_FALSE(refused.accepted);
+  EXPECT_NE(refused.message.find("the disk does not answer"), std::string::npos) << refused.message;
+  EXPECT_TRUE(goesOn()) << daemon->said();
+
+  std::filesystem::remove(broken_);
+  EXPECT_TRUE(daemon->says("recording to " + recording + " ended with the run")) << daemon->said();
+  EXPECT_TRUE(daemon->says("points saved to " + map_)) << daemon->said();
+  const command_answer_t begun = robot_->ask(command_t::START_RECORDING);
+  EXPECT_TRUE(begun.accepted) << begun.message;
+  EXPECT_TRUE(goesOn()) << daemon->said();
+  daemon->send(SIGTERM);
+  EXPECT_EQ(daemon->exitCode(), 0) << daemon->said();
+  EXPECT_GE(readRecording(recording).frames.size(), 10U);
+  EXPECT_FALSE(readRecording(begun.message.substr(begun.message.find('/'))).frames.empty());
+}
+
 TEST_F(DiskOfADaemon, WhereItsFoldersVanishIsToldAndPosesGoOn) {
   const auto daemon = startFaulty(FaultPlan(), {"--record", recordings_ + "/now", "--map-out", map_});
   ASSERT_TRUE(isTracking()) << daemon->said();
