@@ -40,6 +40,7 @@ class CaptureLink {
   }
   void answer(const Command& command, bool accepted, const std::string& message) {
     const std::lock_guard<std::mutex> lock(mutex_);
+    underway_.reset();
     answers_.push_back({command, accepted, message});
   }
 
@@ -58,16 +59,23 @@ class CaptureLink {
   // False where one is still being carried out.
   bool request(const Command& command) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (request_) return false;
-    request_ = command;
+    if (underway_) return false;
+    underway_ = request_ = command;
     requested_.store(true, std::memory_order_release);
     return true;
+  }
+  // Whether it is the one that is being carried out, sent again for want of an answer.
+  bool isUnderway(const Command& command) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return underway_ && underway_->id == command.id && underway_->kind == command.kind &&
+           underway_->sender == command.sender;
   }
 
  private:
   mutable std::mutex mutex_;
   std::string camera_problem_;
   std::optional<Command> request_;
+  std::optional<Command> underway_;  // requested and not answered yet
   std::vector<Answer> answers_;
   std::atomic<bool> requested_{false}, save_map_{false};
   std::atomic<std::int64_t> waits_{0}, lost_{0};

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/failure_message.h"
 #include "app/open_camera.h"
 #include "dataset/saved_map.h"
 #include "drivers/lcm/start_check.h"
@@ -13,6 +14,7 @@ namespace edgeslam {
 namespace {
 
 constexpr auto longest_wait = std::chrono::milliseconds(100);  // for a frame, before signals and commands are seen to
+constexpr auto longest_preparation = std::chrono::seconds(3);  // of a recording, by the disk
 
 PublishingSetup publishingOf(const DaemonSetup& setup, Viewer* viewer) {
   PublishingSetup publishing = publishingSetup(setup.configuration, setup.camera);
@@ -90,7 +92,7 @@ void Daemon::oneRun() {
   setUpThread({"edgeslam", 0, 0, false, {}});  // for the threads to come
   if (!end.command) publisher_->service().stopping();
   run.stop(end.settles);
-  publisher_->end();
+  publisher_->end(/*is_last=*/!end.command);
   recorder_.reset();
   if (end.command) return beginNext(*end.command, run);
   ended_ = true;
@@ -105,7 +107,12 @@ void Daemon::oneRun() {
 Daemon::RunEnd Daemon::capture(LiveRun& run) {
   while (!signals_.end()) {
     if (signals_.takeMapWish()) link_.askForMapToBeSaved();
-    if (const std::optional<Command> command = link_.takeRequest(); command && prepare(*command)) return {command};
+    if (preparation_) {
+      seeToPreparation();
+    } else if (const std::optional<Command> command = link_.takeRequest()) {
+      prepare(*command);
+    }
+    if (prepared_) return {std::exchange(prepared_, std::nullopt)};
     const Capture captured = camera_->next(run.nextSlot().grey, longest_wait);
     if (captured.event == CaptureEvent::ended) {
       log_.tell(camera_->stream().camera + ": at its end");
@@ -156,19 +163,46 @@ void Daemon::takeDamaged(const Capture& captured, LiveRun& run) {
   link_.lost(captured.frame.lost_before + captured.frame.passed_over_before);
 }
 
-// While the run goes on still: false where the command cannot be carried out, and is answered.
-bool Daemon::prepare(const Command& command) {
-  if (command.kind != CommandKind::start_recording) return true;
-  setUpThread({"edgeslam", 0, 0, false, {}});  // the recorder's thread inherits it
-  try {
-    next_recorder_ = recordTo(nextRecordingFolder());
-  } catch (const std::exception& error) {
-    setUpThread({"capture", setup_.configuration.settings.threads.capture_priority, 0, false, {}});
-    link_.answer(command, false, error.what());
-    log_.tell(std::string("no recording: ") + error.what());
-    return false;
+// The run goes on until the disk, which may be slow, has the folder of the next one's recording.
+void Daemon::prepare(const Command& command) {
+  if (command.kind == CommandKind::reset && !setup_.configuration.service.records_from_start) {
+    prepared_ = command;
+    return;
   }
-  return true;
+  preparation_ = {command, ++preparations_, std::chrono::steady_clock::now() + longest_preparation};
+  disk_work_.begin([this, command, number = preparations_]() -> BackgroundWork::Completion {
+    const auto isGivenUp = [this, number] { return !preparation_ || preparation_->number != number; };
+    try {
+      return [this, isGivenUp, command, recorder = recordTo(nextRecordingFolder())] {
+        if (isGivenUp()) return;
+        preparation_.reset();
+        next_recorder_ = recorder;
+        prepared_ = command;
+      };
+    } catch (const std::exception& error) {
+      return [this, isGivenUp, command, problem = failureMessage(error)] {
+        if (!isGivenUp()) cannotRecord(command, problem);
+      };
+    }
+  });
+}
+
+void Daemon::seeToPreparation() {
+  disk_work_.complete();
+  if (!preparation_ || std::chrono::steady_clock::now() < preparation_->until) return;
+  const std::string& folder = setup_.configuration.service.recordings_folder;
+  cannotRecord(Command(preparation_->command), folder + ": the disk does not answer");
+}
+
+// Which is no reason not to begin anew.
+void Daemon::cannotRecord(const Command& command, const std::string& problem) {
+  preparation_.reset();
+  log_.tell("no recording: " + problem);
+  if (command.kind == CommandKind::reset) {
+    prepared_ = command;
+  } else {
+    link_.answer(command, false, problem);
+  }
 }
 
 // A recording repeats a run only from its start: the run to come goes on with the map of the one before, which is kept
@@ -176,7 +210,6 @@ bool Daemon::prepare(const Command& command) {
 void Daemon::beginNext(const Command& command, LiveRun& run) {
   if (command.kind == CommandKind::reset) {
     start_ = RunStart::new_map;
-    recordWhereConfigured();
     log_.tell("the map is forgotten, begun anew");
     return link_.answer(command, true, "begun anew");
   }
@@ -226,11 +259,14 @@ std::string Daemon::nextRecordingFolder() const {
 }
 
 void Daemon::saveMapAtStart(const Map& map, const std::string& folder) {
-  try {
-    saveMap(folder + "/" + recording_map_name, setup_.camera, map);
-  } catch (const std::exception& error) {
-    log_.tell(std::string("the recording will not repeat the run, its map is not with it: ") + error.what());
-  }
+  disk_work_.begin([this, map = std::make_shared<const Map>(map), folder]() -> BackgroundWork::Completion {
+    try {
+      saveMap(folder + "/" + recording_map_name, setup_.camera, *map);
+    } catch (const std::exception& error) {
+      log_.tell("the recording will not repeat the run, its map is not with it: " + failureMessage(error));
+    }
+    return {};
+  });
 }
 
 void Daemon::writeMap(const Map& map) {

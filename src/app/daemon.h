@@ -2,10 +2,12 @@
 // of a recording) follow each other in the same process, camera and LCM staying open.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "app/background_work.h"
 #include "app/capture_link.h"
 #include "app/configuration.h"
 #include "app/daemon_signals.h"
@@ -42,6 +44,12 @@ class Daemon {
     std::optional<Command> command;
     bool settles = false;  // the frames are at their end: mapping finishes
   };
+  // For this command a recording is being opened.
+  struct Preparation {
+    Command command;
+    std::int64_t number = 0;
+    std::chrono::steady_clock::time_point until;  // it is given up then
+  };
 
   void tellStartProblems();
   void tellProcessorProblems(const LiveRun& run);
@@ -49,7 +57,9 @@ class Daemon {
   RunEnd capture(LiveRun& run);
   void take(const Capture& capture, LiveRun& run);
   void takeDamaged(const Capture& capture, LiveRun& run);
-  bool prepare(const Command& command);
+  void prepare(const Command& command);
+  void seeToPreparation();
+  void cannotRecord(const Command& command, const std::string& problem);
   void beginNext(const Command& command, LiveRun& run);
   std::shared_ptr<FlightRecorder> recordTo(const std::string& folder);
   void recordWhereConfigured();
@@ -71,12 +81,17 @@ class Daemon {
   std::unique_ptr<RunPublisher> publisher_;
   std::shared_ptr<FlightRecorder> recorder_;
   std::shared_ptr<FlightRecorder> next_recorder_;  // of the run to come
+  std::optional<Preparation> preparation_;
+  std::int64_t preparations_ = 0;    // so far
+  std::optional<Command> prepared_;  // that can be carried out now
 
   RunStart start_ = RunStart::new_map;
   std::optional<Map> map_;  // that the run to come goes on with
   bool ended_ = false;
   std::int64_t index_ = -1, time_ns_ = -1;  // of the last frame handed over
   bool damage_told_ = false, processors_told_ = false;
+
+  BackgroundWork disk_work_;  // last: the others outlive it
 };
 
 }  // namespace edgeslam

@@ -83,7 +83,7 @@ LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Set
   feed(source, camera, replay.pace, run);
   setUpThread({"edgeslam", 0, 0, false, {}});
   run.stop(/*settle=*/true);
-  if (replay.publisher) replay.publisher->end();
+  if (replay.publisher) replay.publisher->end(/*is_last=*/true);
 
   LiveReplayResult result;
   const LiveCounts counts = run.counts();

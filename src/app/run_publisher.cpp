@@ -12,10 +12,11 @@ std::string stateText(TrackingState state, const std::string& reason) {
   return stateName(state) + (reason.empty() ? "" : ", " + reason);
 }
 
-std::string serviceText(const PublisherStatus& status, TrackingState state) {
+std::string serviceText(const PublisherStatus& status, TrackingState state, bool with_gaps) {
   if (!status.camera_problem.empty()) return "no camera: " + status.camera_problem;
   return std::string(stateName(state)) + ", " + std::to_string(status.keyframes) + " keyframes, " +
-         std::to_string(status.points) + " points" + (status.recording ? ", recording" : "");
+         std::to_string(status.points) + " points" + (status.recording ? ", recording" : "") +
+         (with_gaps ? " with gaps" : "");
 }
 
 }  // namespace
@@ -44,6 +45,7 @@ void RunPublisher::begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder,
   run_ = &run;
   recorder_ = std::move(recorder);
   told_recording_ = isRecording();
+  told_gaps_ = false;
   published_changes_ = 0;
   shown_changes_ = -1;
   if (setup_.viewer) run.showTo(setup_.viewer->looks());
@@ -55,11 +57,14 @@ void RunPublisher::begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder,
   }
 }
 
-void RunPublisher::end() {
+void RunPublisher::end(bool is_last) {
   work_.finish();
   work_.complete();
   answerSaves(std::exchange(save_wishes_, {}), false, "the run ended before the map could be saved");
-  if (recorder_) recorder_->stop();
+  if (told_recording_) endRecording({});
+  recorder_.reset();
+  if (is_last) disk_work_.finish();
+  disk_work_.complete();
   const PublisherStatus last = status();
   publisher_.status(last);
   showStatus(last);
@@ -108,6 +113,7 @@ void RunPublisher::report(const MappingReport& report) {
 void RunPublisher::tick() {
   const Clock::time_point now = Clock::now();
   work_.complete();
+  disk_work_.complete();
   for (const CaptureLink::Answer& given : link_.takeAnswers()) {
     answer(given.command, given.accepted, given.message);
   }
@@ -130,7 +136,7 @@ void RunPublisher::eachSecond(Clock::time_point now) {
   const PublisherStatus current = status();
   publisher_.status(current);
   showStatus(current);
-  service_.status(serviceText(current, state_));
+  service_.status(serviceText(current, state_, recordsWithGaps()));
   tellChanges(current);
   publishChangedMap(now);
   showChangedMap(now);
@@ -176,6 +182,10 @@ void RunPublisher::tellChanges(const PublisherStatus& status) {
   }
   if (told_recording_ && !status.recording && recorder_) log_.tell(recorder_->status().message);
   told_recording_ = status.recording;
+  if (!told_gaps_ && recordsWithGaps()) {
+    told_gaps_ = true;
+    log_.tell("recording to " + recorder_->folder() + ", with gaps: it will not repeat the run");
+  }
 }
 
 // Counters of the runs before are in; what is of now is of this run.
@@ -190,5 +200,7 @@ LiveCounts RunPublisher::countsOverRuns() const {
 }
 
 bool RunPublisher::isRecording() const { return recorder_ && recorder_->status().recording; }
+
+bool RunPublisher::recordsWithGaps() const { return isRecording() && recorder_->status().not_recorded > 0; }
 
 }  // namespace edgeslam

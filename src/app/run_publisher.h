@@ -48,9 +48,9 @@ class RunPublisher {
 
   // Before LiveRun::start(). `recorder` may be null. same_map: the scale stays.
   void begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder, RunStart start);
-  // After LiveRun::stop(). Ends the recording; saves of the map that are under way are waited for; a last status has
-  // the run's totals.
-  void end();
+  // After LiveRun::stop(). Ends the recording; a last status has the run's totals. What waits for the disk, the
+  // recording's end and saves of the map, goes on beside the next run; after the last one it is waited for.
+  void end(bool is_last);
 
   // LiveObserver's.
   LiveObserver observer();
@@ -76,11 +76,13 @@ class RunPublisher {
   void tellChanges(const PublisherStatus& status);
   LiveCounts countsOverRuns() const;
   bool isRecording() const;
+  bool recordsWithGaps() const;
 
   // run_publisher_commands.cpp: commands and map.
   void carryOut(const Command& command);
   void askToSaveMap(const MapSaveWish& wish);
   void stopRecording(const Command& command);
+  void endRecording(const std::optional<Command>& command);
   void passToCapture(const Command& command);
   void answer(const Command& command, bool accepted, const std::string& message);
   void publishChangedMap(Clock::time_point now);
@@ -107,6 +109,7 @@ class RunPublisher {
   PositionHistory history_;
   ScaleSearch search_;
   BackgroundWork work_;
+  BackgroundWork disk_work_;  // may take as long as a disk that is slow, or does not answer
   LiveRun* run_ = nullptr;
   std::shared_ptr<FlightRecorder> recorder_;
   ScaleKind scale_ = ScaleKind::unknown;
@@ -121,7 +124,7 @@ class RunPublisher {
 
   // What the log was told last.
   std::string told_state_, told_lcm_problem_;
-  bool told_recording_ = false;
+  bool told_recording_ = false, told_gaps_ = false;
 
   bool ground_wanted_ = false;                 // of the map that was asked for
   KeyframeId ground_keyframe_ = -1;            // the latest of the map in which it was looked for

@@ -60,19 +60,24 @@ void RunPublisher::answer(const Command& command, bool accepted, const std::stri
 void RunPublisher::passToCapture(const Command& command) {
   if (!setup_.begins_anew) {
     answer(command, false, "a replay does not begin anew");
-  } else if (!link_.request(command)) {
+  } else if (!link_.request(command) && !link_.isUnderway(command)) {
     answer(command, false, "another command is still being carried out; send it again");
   }
 }
 
 void RunPublisher::stopRecording(const Command& command) {
   if (!isRecording()) return answer(command, false, "there is no recording");
+  endRecording(command);
+}
+
+// Of a command or, without one, with its run.
+void RunPublisher::endRecording(const std::optional<Command>& command) {
   told_recording_ = false;  // it is told here
-  work_.begin([this, command, recorder = recorder_]() -> BackgroundWork::Completion {
+  disk_work_.begin([this, command, recorder = std::exchange(recorder_, nullptr)]() -> BackgroundWork::Completion {
     const std::string message = recorder->stop().message;
     return [this, command, message] {
       log_.tell(message);
-      answer(command, true, message);
+      if (command) answer(*command, true, message);
     };
   });
 }
@@ -126,7 +131,7 @@ void RunPublisher::saveMapInBackground(const MapPointer& map) {
   const std::vector<MapSaveWish> wishes = std::exchange(save_wishes_, {});
   // What was saved before is worth more.
   if (map->points.empty()) return answerSaves(wishes, false, "there is no map yet");
-  work_.begin([this, map, wishes]() -> BackgroundWork::Completion {
+  disk_work_.begin([this, map, wishes]() -> BackgroundWork::Completion {
     const auto [saved, message] = save(*map, setup_.camera, setup_.map_file);
     return [this, wishes, saved = saved, message = message] { answerSaves(wishes, saved, message); };
   });

@@ -5,11 +5,11 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <system_error>
 #include <utility>
 
 #include "dataset/atomic_file.h"
+#include "dataset/frame_encoding.h"
 #include "dataset/recording_layout.h"
 #include "dataset/text_file.h"
 #include "edgeslam/input_error.h"
@@ -89,10 +89,7 @@ std::string FrameFolderWriter::fail(const std::string& problem) {
 std::string FrameFolderWriter::write(std::int64_t time_ns, const cv::Mat& grey) {
   if (!problem_.empty()) return problem_;
   if (time_ns < 0 || time_ns <= last_ns_) return fail(folder_ + ": a frame's time stamp is not after the one before");
-  // As the flight recorder's frames: lossless, of PNG's ways the one that takes the least time.
-  if (!cv::imencode(".png", grey, png_, {cv::IMWRITE_PNG_STRATEGY, cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY})) {
-    return fail(folder_ + ": a frame cannot be encoded");
-  }
+  if (!encodeFrame(grey, png_)) return fail(folder_ + ": no memory to encode a frame");
   const auto size = static_cast<std::int64_t>(png_.size());
   if (freeBytes(folder_) - size < free_bytes_kept_) return fail(tooFull(folder_, free_bytes_kept_));
   const std::string name = std::string(recording_frames_name) + "/" + recordedFrameName(time_ns);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <exception>
-#include <opencv2/imgcodecs.hpp>
 
+#include "dataset/frame_encoding.h"
 #include "dataset/text_file.h"
 #include "edgeslam/input_error.h"
 
@@ -18,14 +18,6 @@ constexpr std::size_t most_waiting_bytes = 1 << 16;  // of lines
 
 std::int64_t wholeBlocks(std::size_t bytes) {
   return (static_cast<std::int64_t>(bytes) + block_bytes - 1) / block_bytes * block_bytes;
-}
-
-// Lossless. Of PNG's ways the one that takes the least time: each pixel's difference to its left neighbour (what OpenCV
-// does unless told a level), Huffman-coded. 640 x 480 pixels take 2.1 ms of an EPYC core and 120 to 170 KB; zlib's
-// level 1 takes 5.7 ms and gives larger files. A PGM takes 0.05 ms but 307 KB: over 9 MB/s at 30 frames/s, which wears
-// out an SD card and halves the time that fits into the budget.
-bool encode(const cv::Mat& grey, std::vector<unsigned char>& png) {
-  return cv::imencode(".png", grey, png, {cv::IMWRITE_PNG_STRATEGY, cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY});
 }
 
 std::string formatDescription(const std::string& program_version) {
@@ -67,7 +59,7 @@ bool RecordingWriter::writeFrame(std::int64_t index, std::int64_t time_ns, const
     return refuse("frame " + std::to_string(index) + " is not of the camera's size in 8 bits of grey");
   }
   if (std::string problem = order_.add(decision); !problem.empty()) return refuse(problem);
-  if (!encode(grey, png_)) return refuse("frame " + std::to_string(index) + " cannot be encoded");
+  if (!encodeFrame(grey, png_)) return refuse("no memory to encode frame " + std::to_string(index));
   const std::int64_t bytes = wholeBlocks(png_.size()) + folder_entry_bytes;
   if (!keepsLimits(bytes)) return false;
   const std::string name = recordedFrameName(time_ns);

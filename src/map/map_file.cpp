@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <array>
+#include <new>
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
@@ -58,10 +59,20 @@ std::uint32_t checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
+// PNG takes every grey image. What can be missing is memory, of which OpenCV says only that an assertion failed.
+std::vector<unsigned char> encodedPng(const cv::Mat& grey) {
+  std::vector<unsigned char> png;
+  try {
+    if (cv::imencode(".png", grey, png)) return png;
+  } catch (const cv::Exception&) {
+    throw std::bad_alloc();
+  }
+  throw std::bad_alloc();
+}
+
 void writeImages(ByteWriter& writer, const FrameImages& images) {
   CV_Assert(!images.pyramid.levels.empty() && images.pyramid.levels.front().type() == CV_8U);
-  std::vector<unsigned char> png;
-  CV_Assert(cv::imencode(".png", images.pyramid.levels.front(), png));
+  const std::vector<unsigned char> png = encodedPng(images.pyramid.levels.front());
   writer(images.frame_index, images.time_ns, static_cast<std::int32_t>(images.pyramid.levels.size()),
          std::string(png.begin(), png.end()));
 }

@@ -141,9 +141,12 @@ auto stepped(const char* call, Step step, const std::string& path, const std::st
     half();
     cutPower();
   }
-  if (number >= plan.first &&
-      (plan.while_exists.empty() || syscall(SYS_faccessat, AT_FDCWD, plan.while_exists.c_str(), F_OK) == 0)) {
+  const auto lasts = [&] {
+    return plan.while_exists.empty() || syscall(SYS_faccessat, AT_FDCWD, plan.while_exists.c_str(), F_OK) == 0;
+  };
+  if (number >= plan.first && lasts()) {
     if (plan.fault == Fault::slow) usleep(50'000);
+    while (plan.fault == Fault::stuck && lasts()) usleep(5'000);
     if (const int error = errorOf(plan.fault, step); error != 0) {
       log(number, "failed", path, call);
       errno = error;

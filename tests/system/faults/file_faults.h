@@ -15,7 +15,8 @@ enum class Fault {
   no_space,    // from step `first` on what needs space fails with ENOSPC
   read_only,   // from step `first` on what changes a folder fails with EROFS
   broken,      // from step `first` on what transfers data fails with EIO
-  slow         // from step `first` on each takes 50 ms
+  slow,        // from step `first` on each takes 50 ms
+  stuck        // from step `first` on none ends while `while_exists` is there
 };
 
 struct FaultPlan {

@@ -77,7 +77,7 @@ TEST_F(RunPublisherTest, TotalsGoOnOverRuns) {
   for (int i = 0; i < 3; ++i) run_->handOver();
   link_.lost(2);
   publisher_->frame(frameWithoutPose(0, TrackingState::predicted, "torn"), "torn");
-  publisher_->end();
+  publisher_->end(/*is_last=*/false);
   LiveRun next(smallCamera(), Settings(), LiveOptions(), LiveObserver(), nullptr);
   publisher_->begin(next, nullptr, RunStart::new_map);
   next.handOver();
@@ -86,7 +86,7 @@ TEST_F(RunPublisherTest, TotalsGoOnOverRuns) {
   EXPECT_EQ(status.frames_dropped, 2);
   EXPECT_EQ(status.frames_unreadable, 1);
   EXPECT_FALSE(status.recording);
-  publisher_->end();
+  publisher_->end(/*is_last=*/true);
 }
 
 }  // namespace

@@ -61,10 +61,15 @@ class FakeDriver : public SystemCalls {
   // A frame is filled whose pixels' bytes all are `value`; false where the program has left no buffer.
   bool fill(std::uint8_t value, std::uint32_t sequence, std::int64_t stamp_ns, std::uint32_t flags = 0,
             int missing_bytes = 0) {
+    return fill(std::vector<std::uint8_t>(imageBytes(), value).data(), sequence, stamp_ns, flags, missing_bytes);
+  }
+  // `image`: of the size and format that are set.
+  bool fill(const std::uint8_t* image, std::uint32_t sequence, std::int64_t stamp_ns, std::uint32_t flags = 0,
+            int missing_bytes = 0) {
     if (!streaming || queued_.empty()) return false;
     const std::uint32_t index = queued_.front();
     queued_.pop_front();
-    std::memset(memory_[index].data() + data_offset, value, memory_[index].size() - data_offset);
+    std::memcpy(memory_[index].data() + data_offset, image, memory_[index].size() - data_offset);
     v4l2_buffer buffer{};
     buffer.index = index;
     buffer.sequence = sequence;
