@@ -143,6 +143,17 @@ TEST_F(GuidedMatching, WhatMovesTooFarIsNotBelieved) {
   }
 }
 
+// Too far for the full image alone: the coarser one leads there.
+TEST_F(GuidedMatching, IsFoundFromSeveralPixelsOff) {
+  twoKeyframes(at(-0.1, 0), false, at(0.1, 0), false);
+  const Pose here = at(0.05, 0);
+  Measurement measured;
+  for (const double off : {-7.0, -5.0, 5.0, 7.0}) {
+    EXPECT_TRUE(findFrom(here, {off, 0}, 8, measured)) << off;
+    EXPECT_LT((measured.pixel - measuredFrom(here).pixel).norm(), 0.3) << off;
+  }
+}
+
 TEST_F(GuidedMatching, ACornerMayNotMoveFartherAlongThanAcross) {
   twoKeyframes(at(-0.1, 0), false, at(0.1, 0), false);
   const PlaceView from = viewOf(0);

@@ -60,6 +60,20 @@ TEST_F(MapSearchReach, APointOfAnEdgeIsFoundAcrossItAsFarAsTheRadius) {
   }
 }
 
+// Farther than the alignment itself would lead.
+TEST_F(MapSearchReach, AWiderRadiusIsSearchedWhole) {
+  MapSearchOptions wide;
+  wide.radius = 14;
+  for (const float off : {-14.0f, -11.0f, 11.0f, 14.0f}) {
+    const FoundPoints across = found(pointAt(on_edge_, false), {off, 0}, wide);
+    ASSERT_EQ(across.size(), 1U) << off;
+    EXPECT_NEAR(across[0].pixel.x(), on_edge_.x(), 0.1) << off;
+    const FoundPoints upright = found(pointAt(corner_, true), {0, off}, wide);
+    ASSERT_EQ(upright.size(), 1U) << off;
+    EXPECT_LT((upright[0].pixel - corner_).norm(), 0.3f) << off;
+  }
+}
+
 TEST_F(MapSearchReach, BeyondTheRadiusNothingIsFound) {
   for (const bool corner : {false, true}) {
     const SearchPoint point = pointAt(corner ? corner_ : on_edge_, corner);
@@ -80,14 +94,15 @@ TEST_F(MapSearchReach, ACornerIsFoundInAllDirections) {
   }
 }
 
-// Its picture there is another one than what the keyframe saw.
+// The edges are where they should be, dark and bright have changed places.
 TEST_F(MapSearchReach, WhatLooksDifferentIsNotFound) {
-  SearchPoint turned = pointAt(on_edge_, false);
-  VisiblePoints visible;
-  visible.push_back({0, on_edge_, -Eigen::Vector2f::UnitX(), -Eigen::Matrix2f::Identity()});
   SearchPoints points;
-  points.push_back(turned);
-  EXPECT_TRUE(findVisiblePoints(points, visible, *images_, edges_, {}).empty()) << "dark and bright change places";
+  points.push_back(pointAt(on_edge_, false));
+  VisiblePoints visible;
+  visible.push_back({0, on_edge_, Eigen::Vector2f::UnitX(), Eigen::Matrix2f::Identity()});
+  const auto negative = imagesOf(255 - picture());
+  EXPECT_EQ(findVisiblePoints(points, visible, *images_, edges_, {}).size(), 1U);
+  EXPECT_TRUE(findVisiblePoints(points, visible, *negative, edges_, {}).empty());
 }
 
 TEST_F(MapSearchReach, OnlyOnAnEdgeOfTheSameDirection) {
