@@ -85,7 +85,7 @@ class GuidedMatching : public ::testing::Test {
   const PointId point_ = 5;
   const Eigen::Vector3d position_{0.05, 0.1, 2};
   const Camera camera_ = smallCamera();
-  const TexturedPlane plane_{SmoothTexture(31, 12, 60)};
+  TexturedPlane plane_{SmoothTexture(31, 12, 60)};
   Map map_;
 };
 
@@ -143,15 +143,21 @@ TEST_F(GuidedMatching, WhatMovesTooFarIsNotBelieved) {
   }
 }
 
-// Too far for the full image alone: the coarser one leads there.
+// Of a fine texture the full image alone does not lead so far: the coarser one does.
 TEST_F(GuidedMatching, IsFoundFromSeveralPixelsOff) {
-  twoKeyframes(at(-0.1, 0), false, at(0.1, 0), false);
   const Pose here = at(0.05, 0);
-  Measurement measured;
-  for (const double off : {-7.0, -5.0, 5.0, 7.0}) {
-    EXPECT_TRUE(findFrom(here, {off, 0}, 8, measured)) << off;
-    EXPECT_LT((measured.pixel - measuredFrom(here).pixel).norm(), 0.3) << off;
+  int found = 0, tried = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    plane_ = {SmoothTexture(seed, 9, 30)};
+    twoKeyframes(at(-0.1, 0), false, at(0.1, 0), false);
+    for (const double off : {-8.0, -7.0, 7.0, 8.0}) {
+      Measurement measured;
+      ++tried;
+      found +=
+          findFrom(here, {off, 0}, 9, measured) && (measured.pixel - measuredFrom(here).pixel).norm() < 0.3 ? 1 : 0;
+    }
   }
+  EXPECT_GT(found, 0.6 * tried);
 }
 
 TEST_F(GuidedMatching, ACornerMayNotMoveFartherAlongThanAcross) {

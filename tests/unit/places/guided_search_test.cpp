@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <limits>
+#include <set>
 
 #include "unit/places/made_place.h"
 
@@ -155,6 +156,39 @@ TEST(GuidedSearch, EachCountRefusesOneBeyondWhatSpeaksForThePose) {
   EXPECT_FALSE(room().search(options).accepted);
   options.fewest_corners = evidence.visible_corners + 1;
   EXPECT_TRUE(room().search(options).accepted);
+}
+
+TEST(GuidedSearch, LooksForNoMorePointsThanItMayHalfOfThemCorners) {
+  GuidedSearchOptions options = noDemands(false);
+  options.searched_points = 100000;
+  const PoseEvidence all = room().search(options).evidence;
+  ASSERT_GT(all.visible_corners, 12);
+  ASSERT_GT(all.visible - all.visible_corners, 12);
+  options.searched_points = all.visible + 20;  // as the pose may see a few more
+  EXPECT_EQ(room().search(options).evidence.visible, all.visible);
+  EXPECT_EQ(room().search(options).evidence.visible_corners, all.visible_corners);
+  options.searched_points = 24;
+  const GuidedSearchResult few = room().search(options);
+  EXPECT_TRUE(few.accepted);
+  EXPECT_EQ(few.evidence.visible, 24);
+  EXPECT_EQ(few.evidence.visible_corners, 12);
+  EXPECT_GT(few.evidence.cells, 5) << "from all over the image";
+}
+
+TEST(GuidedSearch, ThePointsAroundAKeyframeAreItsOwnAndThoseOfItsBestNeighbours) {
+  const Map& map = room().map;
+  const std::vector<int> shared = sharedPoints(map, 1);
+  ASSERT_NE(shared[0], shared[2]);
+  const KeyframeId best = shared[0] > shared[2] ? 0 : 2;
+  std::set<PointId> expected;
+  int neighbours = 0;
+  for (const KeyframeId keyframe : {KeyframeId(1), best, 2 - best}) {
+    for (const PointObservation& seen : map.keyframes[keyframe].observations) {
+      if (map.points.count(seen.point) > 0) expected.insert(seen.point);
+    }
+    const std::vector<PointId> around = pointsAround(map, 1, neighbours++);
+    EXPECT_EQ(around, std::vector<PointId>(expected.begin(), expected.end())) << neighbours - 1;
+  }
 }
 
 TEST(GuidedSearch, AnotherRoomGivesNoPoseThatIsAccepted) {
