@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <set>
@@ -176,18 +177,24 @@ TEST(GuidedSearch, LooksForNoMorePointsThanItMayHalfOfThemCorners) {
 }
 
 TEST(GuidedSearch, ThePointsAroundAKeyframeAreItsOwnAndThoseOfItsBestNeighbours) {
-  const Map& map = room().map;
-  const std::vector<int> shared = sharedPoints(map, 1);
-  ASSERT_NE(shared[0], shared[2]);
-  const KeyframeId best = shared[0] > shared[2] ? 0 : 2;
+  std::vector<Pose> poses;
+  for (int k = 0; k < 5; ++k) poses.push_back({rotationExp({0, 0.25 * k, 0}), {0.2 * k, 0, 0}});
+  const Map map = makePlace(7, placeCamera(), poses);
+  constexpr KeyframeId centre = 2;
+  const std::vector<int> shared = sharedPoints(map, centre);
+  std::vector<KeyframeId> order{1, 3, 0, 4};
+  std::stable_sort(order.begin(), order.end(), [&](KeyframeId a, KeyframeId b) {
+    return shared[static_cast<std::size_t>(a)] > shared[static_cast<std::size_t>(b)];
+  });
+  order.insert(order.begin(), centre);
   std::set<PointId> expected;
-  int neighbours = 0;
-  for (const KeyframeId keyframe : {KeyframeId(1), best, 2 - best}) {
-    for (const PointObservation& seen : map.keyframes[keyframe].observations) {
+  for (int neighbours = 0; neighbours < 3; ++neighbours) {
+    const std::size_t fewer = expected.size();
+    for (const PointObservation& seen : map.keyframes[order[static_cast<std::size_t>(neighbours)]].observations) {
       if (map.points.count(seen.point) > 0) expected.insert(seen.point);
     }
-    const std::vector<PointId> around = pointsAround(map, 1, neighbours++);
-    EXPECT_EQ(around, std::vector<PointId>(expected.begin(), expected.end())) << neighbours - 1;
+    EXPECT_GT(expected.size(), fewer);
+    EXPECT_EQ(pointsAround(map, centre, neighbours), std::vector<PointId>(expected.begin(), expected.end()));
   }
 }
 
