@@ -23,7 +23,7 @@ edges/edge_detection edges/point_choice edges/blur_gate flow/patch_alignment flo
 adjustment/pose_adjustment adjustment/bundle_linearization adjustment/bundle_minimization adjustment/reduced_solver
 adjustment/pose_graph tracking/keyframe_selection tracking/pose_estimation tracking/point_following tracking/patch_refinement
 tracking/map_search mapping/culling mapping/new_points mapping/local_adjustment mapping/map_uncertainty
-places/loop_verification places/guided_matching'''.split()
+places/loop_verification places/guided_matching places/guided_search places/loop_search places/similarity_estimation'''.split()
 
 # Pattern and what takes its place. A pattern is looked for in code, never in comments, texts or includes.
 BREAKS = [

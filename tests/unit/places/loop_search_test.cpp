@@ -107,6 +107,23 @@ TEST(LoopSearch, EachDemandRefuses) {
   EXPECT_TRUE(refused([](LoopSearchOptions& o) { o.scale_deviation = 1e-4; }));
   EXPECT_TRUE(refused([](LoopSearchOptions& o) { o.fewest_witnesses = o.witnesses + 1; }));
   EXPECT_TRUE(refused([](LoopSearchOptions& o) { o.witness_distance = 1e-6; }));
+  EXPECT_TRUE(refused([](LoopSearchOptions& o) { o.witness_turn_deg = 1e-6; }));
+  EXPECT_TRUE(refused([](LoopSearchOptions& o) { o.witness_scale = 1e-6; }));
+  EXPECT_TRUE(refused([](LoopSearchOptions& o) { o.search.explained_share = 1.01; }));
+}
+
+TEST(LoopSearch, AChangeOfScaleBeyondTheBoundIsRefusedEitherWay) {
+  for (const double log_scale : {log_scale_a_step, -log_scale_a_step}) {
+    Map map = bareRoom();
+    addDrift(log_scale, 0, map);
+    LoopVerificationOptions options = withoutDescriptors();
+    options.largest_scale = 1.1;
+    EXPECT_TRUE(verify(map, kCurrent, kCandidate, options).accepted) << log_scale;
+    options.largest_scale = 1.04;
+    const LoopVerification loop = verify(map, kCurrent, kCandidate, options);
+    EXPECT_FALSE(loop.accepted) << log_scale;
+    EXPECT_NE(loop.reason.find("a change of scale by"), std::string::npos) << loop.reason;
+  }
 }
 
 TEST(LoopSearch, SameInputSameBits) {

@@ -89,6 +89,20 @@ TEST(PointFollowing, MedianDepthIsOfTheMapPointsAmongTheTracks) {
   EXPECT_EQ(medianDepth({}, view, Pose(), 7), 7);
 }
 
+TEST(PointFollowing, MedianDepthDoesNotDependOnTheOrderOfThePoints) {
+  for (int first = 0; first < 41; ++first) {
+    MapView view;
+    view.keyframes = {{0, Pose(), nullptr}};
+    std::vector<Track> tracks;
+    for (int i = 0; i < 41; ++i) {
+      const int depth = 1 + (first + 17 * i) % 41;  // each of 1 to 41 once
+      view.points.push_back(viewPoint(view, i, 0, {0, 0, 1.0 * depth}));
+      tracks.push_back(trackAt(i, {50, 50}));
+    }
+    EXPECT_NEAR(medianDepth(tracks, view, Pose(), 7), 21, 1e-9) << first;
+  }
+}
+
 // Each filter by itself: the others are open.
 class TrackFilters : public ::testing::Test {
  protected:
