@@ -44,7 +44,7 @@ make_system() {
     { tail "$folder/$suite.log"; exit 1; }
 }
 
-in_system() { inside "$root" nice -n 15 env CCACHE_DIR=/ccache CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1 "$@"; }
+in_system() { inside "$root" env CCACHE_DIR=/ccache CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1 "$@"; }
 
 # configure FOLDER LAUNCHER BUILD_TYPE
 configure() {
