@@ -19,8 +19,6 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using asio::ip::tcp;
 
-constexpr auto message_time =
-    std::chrono::seconds(10);  // a client that does not read a message in this time is dropped
 constexpr auto linger_time = std::chrono::seconds(2);
 constexpr int stream_buffer = 256 << 10;       // of the kernel, so that what waits there is not old [bytes]
 constexpr std::size_t most_drained = 1 << 20;  // [bytes]

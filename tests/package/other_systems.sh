@@ -1,22 +1,24 @@
 #!/bin/bash
-# Builds in another Debian, by another compiler, and runs the unit tests of the stages there. As root, with a Debian mirror in reach.
+# Compiles in another Debian, by another compiler, or builds and runs the unit tests there. As root, with a Debian mirror in reach.
 #
 #     tests/package/other_systems.sh SUITE COMPILER FOLDER [TARGET...]
 #
-# SUITE: bookworm, trixie, ...   COMPILER: a Debian package's name, g++-14 or clang-19   TARGET: edgeslam, flow_tests, ...; default: all
+# SUITE: bookworm, trixie, ...   COMPILER: a Debian package's name, g++-14 or clang-19   TARGET: all, edgeslam, flow_tests, ...
+# Without a target, every file is checked by the compiler, and no code is made: an eighth of the time of a build.
 # FOLDER has the system, the build and the compiler's cache; a later call goes on from there.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 sources=$(cd "$here/../.." && pwd)
 . "$here/clean_debian.sh"
 
-(($# >= 3)) || { sed -n '2,8s/^# \?//p' "${BASH_SOURCE[0]}"; exit 2; }
+(($# >= 3)) || { sed -n '2,9s/^# \?//p' "${BASH_SOURCE[0]}"; exit 2; }
 suite=$1
 compiler=$2
 folder=$(realpath -m "$3")
 targets=("${@:4}")
 root=$folder/$suite
-build=/build/$compiler
+command=${compiler/clang-/clang++-}
+log=$folder/$suite-$compiler.log
 
 # The sources lie in the system read-only; what is built, beside them.
 mount_all() {
@@ -42,18 +44,36 @@ make_system() {
     { tail "$folder/$suite.log"; exit 1; }
 }
 
+in_system() { inside "$root" env CCACHE_DIR=/ccache CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1 "$@"; }
+
+# configure FOLDER LAUNCHER BUILD_TYPE
+configure() {
+  in_system cmake -S /src -B "$1" -G Ninja -DCMAKE_CXX_COMPILER="$command" -DCMAKE_CXX_COMPILER_LAUNCHER="$2" -DCMAKE_BUILD_TYPE="$3" > "$log" 2>&1 ||
+    { tail -20 "$log"; exit 1; }
+}
+
+# build FOLDER TARGET...: goes on after a file that fails, and shows the messages.
+build() {
+  in_system ninja -C "$1" -j 1 -k 0 "${@:2}" >> "$log" 2>&1 || { grep -E 'FAILED:|error:' "$log" | cut -c1-300 | head -40; exit 1; }
+}
+
+check_every_file() {
+  local at=/build/check-$compiler objects
+  configure "$at" /src/tests/package/compile_only.sh Debug
+  mapfile -t objects < <(in_system ninja -C "$at" -t targets all | sed -n 's/: CXX_COMPILER__.*//p')
+  build "$at" "${objects[@]}"
+  echo "ok: ${#objects[@]} files without a warning"
+}
+
 build_and_test() {
-  local at_once=(inside "$root" nice -n 15 env CCACHE_DIR=/ccache CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1)
-  "${at_once[@]}" cmake -S /src -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="${compiler/clang-/clang++-}" \
-    -DCMAKE_CXX_COMPILER_LAUNCHER=ccache > "$folder/$suite-$compiler.log" 2>&1 || { tail -20 "$folder/$suite-$compiler.log"; exit 1; }
-  "${at_once[@]}" cmake --build "$build" --parallel 1 ${targets:+--target "${targets[@]}"} -- -k 0 >> "$folder/$suite-$compiler.log" 2>&1 ||
-    { grep -E 'FAILED|error:' "$folder/$suite-$compiler.log" | cut -c1-300 | head -40; exit 1; }
-  local failed=0 program tests
-  for tests in "$root$build"/*_tests; do
+  local at=/build/$compiler failed=0 program tests result
+  configure "$at" ccache Release
+  build "$at" "$@"
+  for tests in "$root$at"/*_tests; do
     program=$(basename "$tests")
-    inside "$root" nice -n 15 "$build/$program" --gtest_brief=1 > "$folder/$suite-$compiler-$program.log" 2>&1 ||
-      { failed=1; grep -E '^\[  FAILED' "$folder/$suite-$compiler-$program.log" | sort -u | cut -c1-200; }
-    echo "$program: $(grep -E '^\[==========\]' "$folder/$suite-$compiler-$program.log" | tail -1 | cut -c14-)"
+    result=$folder/$suite-$compiler-$program.log
+    in_system "$at/$program" --gtest_brief=1 > "$result" 2>&1 || { failed=1; grep -E '^\[  FAILED' "$result" | sort -u | cut -c1-200; }
+    echo "$program: $(grep -E '^\[==========\]' "$result" | tail -1 | cut -c14-)"
   done
   return $failed
 }
@@ -61,5 +81,5 @@ build_and_test() {
 ((EUID == 0)) || { echo "other_systems.sh: must be run as root" >&2; exit 2; }
 trap unmount_all EXIT
 make_system
-echo "$suite: $(inside "$root" "${compiler/clang-/clang++-}" --version | head -1)"
-build_and_test
+echo "$suite: $(inside "$root" "$command" --version | head -1)"
+if ((${#targets[@]})); then build_and_test "${targets[@]}"; else check_every_file; fi
