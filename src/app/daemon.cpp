@@ -16,6 +16,14 @@ namespace {
 constexpr auto longest_wait = std::chrono::milliseconds(100);  // for a frame, before signals and commands are seen to
 constexpr auto longest_preparation = std::chrono::seconds(3);  // of a recording, by the disk
 
+// Of a recording that comes too late.
+BackgroundWork::Completion discard(FlightRecorder& recorder) {
+  recorder.stop();
+  std::error_code ignored;
+  std::filesystem::remove_all(recorder.folder(), ignored);
+  return {};
+}
+
 PublishingSetup publishingOf(const DaemonSetup& setup, Viewer* viewer) {
   PublishingSetup publishing = publishingSetup(setup.configuration, setup.camera);
   publishing.viewer = viewer;
@@ -169,19 +177,22 @@ void Daemon::prepare(const Command& command) {
     prepared_ = command;
     return;
   }
-  preparation_ = {command, ++preparations_, std::chrono::steady_clock::now() + longest_preparation};
-  disk_work_.begin([this, command, number = preparations_]() -> BackgroundWork::Completion {
-    const auto isGivenUp = [this, number] { return !preparation_ || preparation_->number != number; };
+  preparation_ = {command, std::chrono::steady_clock::now() + longest_preparation};
+  disk_work_.begin([this, command, given_up = preparation_->given_up]() -> BackgroundWork::Completion {
+    if (*given_up) return {};
     try {
-      return [this, isGivenUp, command, recorder = recordTo(nextRecordingFolder())] {
-        if (isGivenUp()) return;
+      std::shared_ptr<FlightRecorder> recorder = openRecording(nextRecordingFolder());
+      if (*given_up) return discard(*recorder);
+      return [this, command, given_up, recorder] {
+        if (*given_up) return disk_work_.begin([recorder] { return discard(*recorder); });
         preparation_.reset();
+        log_.tell(recorder->status().message);
         next_recorder_ = recorder;
         prepared_ = command;
       };
     } catch (const std::exception& error) {
-      return [this, isGivenUp, command, problem = failureMessage(error)] {
-        if (!isGivenUp()) cannotRecord(command, problem);
+      return [this, command, given_up, problem = failureMessage(error)] {
+        if (!*given_up) cannotRecord(command, problem);
       };
     }
   });
@@ -190,6 +201,7 @@ void Daemon::prepare(const Command& command) {
 void Daemon::seeToPreparation() {
   disk_work_.complete();
   if (!preparation_ || std::chrono::steady_clock::now() < preparation_->until) return;
+  *preparation_->given_up = true;
   const std::string& folder = setup_.configuration.service.recordings_folder;
   cannotRecord(Command(preparation_->command), folder + ": the disk does not answer");
 }
@@ -222,10 +234,14 @@ void Daemon::beginNext(const Command& command, LiveRun& run) {
   link_.answer(command, true, "recording to " + next_recorder_->folder());
 }
 
-std::shared_ptr<FlightRecorder> Daemon::recordTo(const std::string& folder) {
+std::shared_ptr<FlightRecorder> Daemon::openRecording(const std::string& folder) const {
   const RecordingDescription description{setup_.camera, formatConfiguration(setup_.configuration), EDGESLAM_VERSION};
-  auto recorder =
-      std::make_shared<FlightRecorder>(folder, description, recordingLimits(setup_.configuration.settings.recording));
+  return std::make_shared<FlightRecorder>(folder, description,
+                                          recordingLimits(setup_.configuration.settings.recording));
+}
+
+std::shared_ptr<FlightRecorder> Daemon::recordTo(const std::string& folder) {
+  std::shared_ptr<FlightRecorder> recorder = openRecording(folder);
   log_.tell(recorder->status().message);
   return recorder;
 }

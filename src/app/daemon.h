@@ -2,6 +2,7 @@
 // of a recording) follow each other in the same process, camera and LCM staying open.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -47,8 +48,8 @@ class Daemon {
   // For this command a recording is being opened.
   struct Preparation {
     Command command;
-    std::int64_t number = 0;
     std::chrono::steady_clock::time_point until;  // it is given up then
+    std::shared_ptr<std::atomic<bool>> given_up = std::make_shared<std::atomic<bool>>(false);
   };
 
   void tellStartProblems();
@@ -61,6 +62,7 @@ class Daemon {
   void seeToPreparation();
   void cannotRecord(const Command& command, const std::string& problem);
   void beginNext(const Command& command, LiveRun& run);
+  std::shared_ptr<FlightRecorder> openRecording(const std::string& folder) const;
   std::shared_ptr<FlightRecorder> recordTo(const std::string& folder);
   void recordWhereConfigured();
   std::string nextRecordingFolder() const;
@@ -82,7 +84,6 @@ class Daemon {
   std::shared_ptr<FlightRecorder> recorder_;
   std::shared_ptr<FlightRecorder> next_recorder_;  // of the run to come
   std::optional<Preparation> preparation_;
-  std::int64_t preparations_ = 0;    // so far
   std::optional<Command> prepared_;  // that can be carried out now
 
   RunStart start_ = RunStart::new_map;

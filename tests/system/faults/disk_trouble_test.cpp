@@ -132,6 +132,8 @@ TEST_F(DiskOfADaemon, WhereStuckCostsNoPoses) {
   EXPECT_EQ(daemon->exitCode(), 0) << daemon->said();
   EXPECT_GE(readRecording(recording).frames.size(), 10U);
   EXPECT_FALSE(readRecording(begun.message.substr(begun.message.find('/'))).frames.empty());
+  const std::filesystem::directory_iterator folders(recordings_);
+  EXPECT_EQ(std::distance(begin(folders), end(folders)), 2) << "those that came too late are not there";
 }
 
 TEST_F(DiskOfADaemon, WhereItsFoldersVanishIsToldAndPosesGoOn) {
