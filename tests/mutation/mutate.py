@@ -56,7 +56,7 @@ def mutants_of(path):
         for name, pattern, replacement in BREAKS:
             for match in pattern.finditer(code):
                 new = replacement if replacement is not None else f'(2 * {match.group()})'
-                if replacement is None and code[:match.start()].rstrip().endswith('<'):
+                if replacement is None and re.search(r'<(?:[\w:]+, )*$', code[:match.start()]):
                     continue  # an argument of a template, a size
                 found.append((number, name, line, line[:match.start()] + new + line[match.end():]))
     return found

@@ -116,7 +116,7 @@ TEST(PoseGraph, WhatIsNoGraphIsRefusedAndLeftAlone) {
   const std::vector<Similarity> truth = circle(6);
   const PoseGraph good = chain(truth, {1.01, Eigen::Quaterniond::Identity(), {0.01, 0, 0}});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<PoseGraph> bad(7, good);
+  std::vector<PoseGraph> bad(9, good);
   bad[0].nodes[0].fixed = false;  // nothing holds it
   bad[1].edges[2].to = 6;
   bad[2].edges[2].from = -1;
@@ -124,6 +124,8 @@ TEST(PoseGraph, WhatIsNoGraphIsRefusedAndLeftAlone) {
   bad[4].edges[1].from_S_to.scale = 0;
   bad[5].edges[1].weight = nan;
   bad[6].length = 0;
+  bad[7].length = -1;
+  bad[8].length = std::numeric_limits<double>::infinity();
   for (PoseGraph& graph : bad) {
     EXPECT_FALSE(optimisePoseGraph(graph, 10).usable);
     EXPECT_EQ(graph.nodes[5].world_S_node.translation, good.nodes[5].world_S_node.translation);
