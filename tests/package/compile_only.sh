@@ -1,11 +1,14 @@
 #!/bin/bash
-# Stands before a compiler (CMAKE_CXX_COMPILER_LAUNCHER): the compiler checks the file and makes no code; the object is an empty file.
-# Much cheaper than a build; of the warnings, those are missing which need the optimiser.
+# Stands before a compiler (CMAKE_CXX_COMPILER_LAUNCHER and CMAKE_CXX_LINKER_LAUNCHER): the compiler checks the file and makes no code;
+# objects and programs are empty files. Much cheaper than a build; of the warnings, those are missing which need the optimiser.
 # usage: compile_only.sh COMPILER ARGUMENT...
 set -euo pipefail
-object=
+output='' compiles=''
 for ((i = 1; i < $#; ++i)); do
-  if [[ ${!i} == -o ]]; then next=$((i + 1)); object=${!next}; fi
+  case ${!i} in
+    -o) next=$((i + 1)); output=${!next} ;;
+    -c) compiles=yes ;;
+  esac
 done
-"$@" -fsyntax-only
-[[ -z $object ]] || : > "$object"
+[[ -z $compiles ]] || "$@" -fsyntax-only
+[[ -z $output ]] || : > "$output"
