@@ -66,16 +66,21 @@ INSTANTIATE_TEST_SUITE_P(Disk, FailingDiskOfADaemon,
                                          DiskTrouble{Fault::broken, "broken", "Input/output error"}),
                          nameOf);
 
-class DiskOfADaemon : public FaultyDaemon {};
+class DiskOfADaemon : public FaultyDaemon {
+ protected:
+  std::unique_ptr<BackgroundProcess> startRecording(Fault fault) {
+    FaultPlan plan;
+    plan.under = disk_;
+    plan.fault = fault;
+    plan.while_exists = broken_;
+    const std::string recording = "recording: {folder: " + recordings_ + ", from_start: true}\n";
+    return startFaulty(plan, {"--config", configure(recording), "--map-out", map_});
+  }
+};
 
 // 50 ms for each call that changes a file: a frame that is recorded takes at least three.
 TEST_F(DiskOfADaemon, WhereSlowCostsFramesOfTheRecordingAndNoPoses) {
-  FaultPlan plan;
-  plan.under = disk_;
-  plan.fault = Fault::slow;
-  plan.while_exists = broken_;
-  const auto daemon = startFaulty(
-      plan, {"--config", configure("recording: {folder: " + recordings_ + ", from_start: true}\n"), "--map-out", map_});
+  const auto daemon = startRecording(Fault::slow);
   ASSERT_TRUE(isTracking()) << daemon->said();
   const std::string recording = std::filesystem::directory_iterator(recordings_)->path().string();
   ASSERT_TRUE(hasRecorded(recording, 10)) << daemon->said();
@@ -99,12 +104,7 @@ TEST_F(DiskOfADaemon, WhereSlowCostsFramesOfTheRecordingAndNoPoses) {
 
 // Commands that need it, too.
 TEST_F(DiskOfADaemon, WhereStuckCostsNoPoses) {
-  FaultPlan plan;
-  plan.under = disk_;
-  plan.fault = Fault::stuck;
-  plan.while_exists = broken_;
-  const auto daemon = startFaulty(
-      plan, {"--config", configure("recording: {folder: " + recordings_ + ", from_start: true}\n"), "--map-out", map_});
+  const auto daemon = startRecording(Fault::stuck);
   ASSERT_TRUE(isTracking()) << daemon->said();
   const std::string recording = std::filesystem::directory_iterator(recordings_)->path().string();
   ASSERT_TRUE(hasRecorded(recording, 10)) << daemon->said();
