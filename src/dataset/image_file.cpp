@@ -1,7 +1,6 @@
 #include "dataset/image_file.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,30 +14,6 @@ namespace edgeslam {
 namespace {
 
 using Bytes = std::vector<unsigned char>;
-
-// The formats by how their files begin; '?' stands for any byte. OpenCV alone would hand
-// some bytes to GDAL, through a file in /tmp; among GDAL's formats are some that name other files and hosts to read.
-bool isImageFormat(const Bytes& bytes) {
-  using namespace std::string_view_literals;
-  constexpr std::array<std::string_view, 12> beginnings{"\x89PNG\r\n\x1a\n"sv,
-                                                        "\xFF\xD8\xFF"sv,
-                                                        "BM"sv,
-                                                        "P1"sv,
-                                                        "P2"sv,
-                                                        "P3"sv,
-                                                        "P4"sv,
-                                                        "P5"sv,
-                                                        "P6"sv,
-                                                        "II*\0"sv,
-                                                        "MM\0*"sv,
-                                                        "RIFF????WEBP"sv};
-  return std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view beginning) {
-    return bytes.size() >= beginning.size() &&
-           std::equal(beginning.begin(), beginning.end(), bytes.begin(), [](char expected, unsigned char found) {
-             return expected == '?' || expected == static_cast<char>(found);
-           });
-  });
-}
 
 bool isJpeg(const Bytes& bytes) { return bytes.size() > 2 && bytes[0] == 0xFF && bytes[1] == 0xD8; }
 
@@ -88,8 +63,11 @@ DecodedImage readGreyImage(const std::string& path) {
   const Bytes bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (!file || bytes.size() != size) return {{}, path + ": cannot be read"};
   if (bytes.empty()) return {{}, path + ": is empty"};
-  if (!isImageFormat(bytes)) return {{}, path + ": is no PNG, JPEG, BMP, PGM, PPM, TIFF or WebP image"};
-  const auto size_claimed = claimedSize({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  // OpenCV alone would hand some bytes to GDAL, through a file in /tmp; among GDAL's formats are some that name other
+  // files and hosts to read.
+  if (!isImageFormat(content)) return {{}, path + ": is no PNG, JPEG, BMP, PGM, PPM, TIFF or WebP image"};
+  const auto size_claimed = claimedSize(content);
   if (size_claimed && isTooLarge(*size_claimed)) return {{}, path + ": too large for an image"};
   if (isJpeg(bytes) && !jpegIsWhole(bytes)) return {{}, path + ": is cut off"};
   if (!size_claimed) return {{}, path + ": is no image that can be decoded, or is damaged"};

@@ -1,6 +1,7 @@
 #include "dataset/image_header.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 
@@ -8,10 +9,6 @@ namespace edgeslam {
 namespace {
 
 using namespace std::string_view_literals;
-
-bool beginsWith(std::string_view bytes, std::string_view beginning) {
-  return bytes.substr(0, beginning.size()) == beginning;
-}
 
 // Unsigned numbers at any place; none beyond the end.
 class Numbers {
@@ -136,16 +133,42 @@ std::optional<ClaimedSize> sizeInWebp(std::string_view bytes) {
   return ClaimedSize{size->width & fourteen_bits, size->height & fourteen_bits};
 }
 
+struct Format {
+  std::string_view beginning;  // '?' stands for any byte
+  std::optional<ClaimedSize> (*size)(std::string_view bytes);
+
+  bool isOf(std::string_view bytes) const {
+    return bytes.size() >= beginning.size() &&
+           std::equal(beginning.begin(), beginning.end(), bytes.begin(),
+                      [](char expected, char found) { return expected == '?' || expected == found; });
+  }
+};
+
+constexpr std::array<Format, 12> formats{{{"\x89PNG\r\n\x1a\n"sv, sizeInPng},
+                                          {"\xFF\xD8\xFF"sv, sizeInJpeg},
+                                          {"BM"sv, sizeInBmp},
+                                          {"P1"sv, sizeInNetpbm},
+                                          {"P2"sv, sizeInNetpbm},
+                                          {"P3"sv, sizeInNetpbm},
+                                          {"P4"sv, sizeInNetpbm},
+                                          {"P5"sv, sizeInNetpbm},
+                                          {"P6"sv, sizeInNetpbm},
+                                          {"II*\0"sv, sizeInTiff},
+                                          {"MM\0*"sv, sizeInTiff},
+                                          {"RIFF????WEBP"sv, sizeInWebp}}};
+
+const Format* formatOf(std::string_view bytes) {
+  const auto* format = std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return f.isOf(bytes); });
+  return format == formats.end() ? nullptr : format;
+}
+
 }  // namespace
 
+bool isImageFormat(std::string_view bytes) { return formatOf(bytes) != nullptr; }
+
 std::optional<ClaimedSize> claimedSize(std::string_view bytes) {
-  if (beginsWith(bytes, "\x89PNG\r\n\x1a\n"sv)) return sizeInPng(bytes);
-  if (beginsWith(bytes, "\xFF\xD8\xFF"sv)) return sizeInJpeg(bytes);
-  if (beginsWith(bytes, "BM"sv)) return sizeInBmp(bytes);
-  if (beginsWith(bytes, "II*\0"sv) || beginsWith(bytes, "MM\0*"sv)) return sizeInTiff(bytes);
-  if (beginsWith(bytes, "RIFF"sv) && bytes.size() >= 16 && bytes.substr(8, 4) == "WEBP"sv) return sizeInWebp(bytes);
-  if (bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6') return sizeInNetpbm(bytes);
-  return std::nullopt;
+  const Format* format = formatOf(bytes);
+  return format ? format->size(bytes) : std::nullopt;
 }
 
 }  // namespace edgeslam
