@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "unit/places/made_place.h"
 
 namespace edgeslam::test {
@@ -124,6 +126,24 @@ TEST(LoopSearch, AChangeOfScaleBeyondTheBoundIsRefusedEitherWay) {
     EXPECT_FALSE(loop.accepted) << log_scale;
     EXPECT_NE(loop.reason.find("a change of scale by"), std::string::npos) << loop.reason;
   }
+}
+
+TEST(LoopSearch, TakesThePoseThatShowsMostOfTheOldSide) {
+  const Map map = drifted();
+  int more = 0;
+  for (const auto& [current, candidate] : {std::pair{kTurn + 1, 1}, {kTurn + 2, 2}, {kCurrent, kCandidate}}) {
+    const auto found_share = [&, current = current, candidate = candidate](int refined_poses) {
+      LoopVerificationOptions options = withoutDescriptors();
+      options.search.refined_poses = refined_poses;
+      const LoopVerification loop = verify(map, current, candidate, options);
+      EXPECT_TRUE(loop.accepted) << current << ": " << loop.reason;
+      return loop.found_share;
+    };
+    const double of_first = found_share(1), of_many = found_share(6);
+    EXPECT_GE(of_many, of_first) << current;
+    more += of_many > of_first;
+  }
+  EXPECT_GE(more, 1) << "no start but the first led anywhere else";
 }
 
 TEST(LoopSearch, SameInputSameBits) {
