@@ -80,7 +80,7 @@ class DaemonScale : public DaemonTest {
   // Of the frames heard; until the recording ends.
   std::vector<state_t> drive(BackgroundProcess& daemon) const {
     EXPECT_EQ(daemon.exitCode(), 0) << daemon.said();
-    EXPECT_TRUE(robot_->hears([](const Heard& heard) { return heard.statuses.back().frames_captured >= frames; }));
+    EXPECT_TRUE(robot_->hearsStatus([](const status_t& status) { return status.frames_captured >= frames; }));
     return robot_->heard().states;
   }
   // Unknown at first, with lengths in map units; then of that kind and true.
@@ -122,9 +122,8 @@ TEST_F(DaemonScale, OfWheelsOfAnotherClockIsNotTakenAndTold) {
       configure(std::string(mounted) + "scale: {source: odometry, odometry_channel: WHEELS}\n");
   const auto daemon = startOn(drive_, {"--config", configuration});
   const Wheels wheels(*robot_, drive_, 1, 3'600'000'000);
-  ASSERT_TRUE(robot_->hears([](const Heard& heard) {
-    return !heard.statuses.empty() &&
-           heard.statuses.back().scale_reason.find("both must be CLOCK_MONOTONIC") != std::string::npos;
+  ASSERT_TRUE(robot_->hearsStatus([](const status_t& status) {
+    return status.scale_reason.find("both must be CLOCK_MONOTONIC") != std::string::npos;
   })) << daemon->said();
   for (const state_t& state : drive(*daemon)) ASSERT_EQ(state.scale_state, state_t::SCALE_UNKNOWN);
 }
@@ -154,7 +153,7 @@ TEST_F(DaemonScale, WithoutAGroundStaysUnknownAndWhyIsTold) {
       "scale: {source: camera_height, camera_height_m: 0.9}\n");
   const auto daemon = startOn(drive_, {"--config", configuration});
   for (const state_t& state : drive(*daemon)) ASSERT_EQ(state.scale_state, state_t::SCALE_UNKNOWN);
-  EXPECT_TRUE(robot_->hears([](const Heard& heard) { return !heard.statuses.back().scale_reason.empty(); }));
+  EXPECT_TRUE(robot_->hearsStatus([](const status_t& status) { return !status.scale_reason.empty(); }));
   EXPECT_TRUE(daemon->says("the scale is not known yet: ")) << daemon->said();
 }
 

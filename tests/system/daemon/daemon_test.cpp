@@ -35,7 +35,7 @@ TEST_F(DaemonTest, EveryFrameIsPublishedUntilTheRecordingEndsAndTheMapIsWritten)
   const std::string map = folder_.path("robot.map");
   const auto daemon = startOn(parlour_, {"--map-out", map});
   ASSERT_EQ(daemon->exitCode(), 0) << daemon->said();
-  ASSERT_TRUE(robot_->hears([](const Heard& heard) { return heard.statuses.back().frames_captured == 300; }));
+  ASSERT_TRUE(robot_->hearsStatus([](const status_t& status) { return status.frames_captured == 300; }));
   const Heard heard = robot_->heard();
   expectAllFrames(heard, 300);
   EXPECT_GT(trajectoryOf(heard.states).size(), 50U) << daemon->said();
@@ -53,7 +53,7 @@ TEST_F(DaemonTest, AReplayAtRealTimePublishesLikewise) {
   EXPECT_FALSE(answer.accepted);
   EXPECT_EQ(answer.message, "a replay does not begin anew");
   ASSERT_EQ(replay->exitCode(), 0) << replay->said();
-  ASSERT_TRUE(robot_->hears([](const Heard& heard) { return heard.statuses.back().frames_captured == 300; }));
+  ASSERT_TRUE(robot_->hearsStatus([](const status_t& status) { return status.frames_captured == 300; }));
   expectAllFrames(robot_->heard(), 300);
   EXPECT_LT(errorOf(trajectoryOf(robot_->heard().states), parlour_), 0.03);
 }
@@ -76,7 +76,7 @@ TEST_F(DaemonTest, SignalsEndItAndWriteTheMap) {
   EXPECT_FALSE(loadMap(map, camera).points.empty());
   const std::string decisions = fileContent(folder_.path("recording/decisions.txt"));
   EXPECT_NE(decisions.find("\nend "), std::string::npos) << "the recording has its clean end";
-  ASSERT_TRUE(robot_->hears([](const Heard& heard) { return !heard.statuses.back().recording; }));
+  ASSERT_TRUE(robot_->hearsStatus([](const status_t& status) { return !status.recording; }));
 }
 
 TEST_F(DaemonTest, ASavedMapIsGoneOnWithAndOneThatCannotBeIsSetAside) {

@@ -71,6 +71,9 @@ class Robot {
   bool hearsState(const std::function<bool(const state_t&)>& what) const {
     return hears([&](const Heard& heard) { return !heard.states.empty() && what(heard.states.back()); });
   }
+  bool hearsStatus(const std::function<bool(const status_t&)>& what) const {
+    return hears([&](const Heard& heard) { return !heard.statuses.empty() && what(heard.statuses.back()); });
+  }
 
   // The answer, sent again until there is one: a daemon that was just started does not hear yet.
   command_answer_t ask(command_t command) {

@@ -60,11 +60,10 @@ class CameraTrouble : public DaemonTest {
     EXPECT_TRUE(robot_->hears([&](const Heard& heard) {
       return heard.states.size() > before + 5 && isMeasured(heard.states.back());
     })) << daemon_->said();
-    EXPECT_TRUE(robot_->hears([](const Heard& heard) { return heard.statuses.back().state != state_t::LOST; }));
+    EXPECT_TRUE(robot_->hearsStatus([](const status_t& status) { return status.state != state_t::LOST; }));
   }
   bool statusTells(const std::string& reason) const {
-    return robot_->hears([&](const Heard& heard) {
-      const status_t& status = heard.statuses.back();
+    return robot_->hearsStatus([&](const status_t& status) {
       return status.state == state_t::LOST && status.reason.find(reason) != std::string::npos;
     });
   }
@@ -75,7 +74,7 @@ class CameraTrouble : public DaemonTest {
   // While the trouble lasts.
   bool dropsFrames(std::int64_t frames) const {
     const std::int64_t before = robot_->heard().statuses.back().frames_dropped;
-    return robot_->hears([&](const Heard& heard) { return heard.statuses.back().frames_dropped >= before + frames; });
+    return robot_->hearsStatus([&](const status_t& status) { return status.frames_dropped >= before + frames; });
   }
 
   const std::string trouble_ = folder_.path("trouble");

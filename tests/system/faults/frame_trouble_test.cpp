@@ -77,8 +77,9 @@ TEST_F(FrameTrouble, FramesThatCannotBeUsedAreCountedAndTrackingComesBack) {
   source_ = copy;
   const auto daemon = startFaulty(FaultPlan(), {"--record", recordings_});
   EXPECT_EQ(daemon->exitCode(), 0) << daemon->said();
-  ASSERT_TRUE(robot_->hears([](const Heard& heard) { return heard.statuses.back().frames_captured == 180; }));
+  ASSERT_TRUE(robot_->hearsStatus([](const status_t& status) { return status.frames_captured == 180; }));
   const Heard heard = robot_->heard();
+  ASSERT_FALSE(heard.states.empty());
   EXPECT_TRUE(isMeasured(heard.states.back())) << heard.states.back().reason;
   EXPECT_EQ(daemon->times("more of them are only counted"), 1) << daemon->said();
   // Of a loaded computer some may have been dropped before they were looked at, or not recorded.
