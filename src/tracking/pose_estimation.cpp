@@ -1,6 +1,8 @@
 #include "tracking/pose_estimation.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/resectioning.h"
 
@@ -108,6 +110,14 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
     pose.by_resectioning = true;
   }
   return pose;
+}
+
+double largestDeviation(const Matrix6d& covariance, double scene_depth) {
+  const auto along_worst = [](const Eigen::Matrix3d& block) {
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly).eigenvalues().z());
+  };
+  return std::max(along_worst(covariance.topLeftCorner<3, 3>()) / scene_depth,
+                  along_worst(covariance.bottomRightCorner<3, 3>()));
 }
 
 }  // namespace edgeslam

@@ -30,4 +30,8 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
                        const Pose& world_T_predicted, const FramePoseOptions& options,
                        std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
+// The largest standard deviation of a pose: of its position, as a share of `scene_depth`, or of its rotation [rad].
+// `covariance`: of [translation; rotation].
+double largestDeviation(const Matrix6d& covariance, double scene_depth);
+
 }  // namespace edgeslam

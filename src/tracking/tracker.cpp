@@ -152,6 +152,9 @@ bool Tracker::followAndLocate(StageClock& clock) {
       estimatePose(camera_, view_, frame_.tracks, first.result.world_T_camera, options_.pose, &scratch_);
   if (!pose.result.converged || pose.result.inlier_count < fewestInliers(pose.track_of_observation.size()))
     return false;
+  if (view_.initialised && !(largestDeviation(pose.result.covariance, scene_depth) < options_.largest_deviation)) {
+    return false;
+  }
   frame_.world_T_camera = pose.result.world_T_camera;
   frame_.covariance = pose.result.covariance;
   frame_.inlier_count = pose.result.inlier_count;

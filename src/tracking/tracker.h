@@ -46,7 +46,8 @@ struct TrackerOptions {
   double regain_inlier_share = 0.6;
   double regain_seconds = 0.7;       // so long after a loss the last tracked frame's points are still looked for
   double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed ...
-  double least_points_share = 0.15;  // ... nor with fewer than this share of the points of the pose before
+  double least_points_share = 0.15;  // ... nor with fewer than this share of the points of the pose before ...
+  double largest_deviation = 0.03;   // ... nor where it is less certain: share of the scene's depth, or angle [rad]
   // Errors of the map's points and of neighbours on an edge go together: the pose's standard deviations in the world
   // are so many times what independent measurements would give.
   double correlation_factor = 6;

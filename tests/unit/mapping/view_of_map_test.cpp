@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace edgeslam {
 namespace {
 
@@ -29,7 +31,7 @@ Map rowOfKeyframes(int count) {
     point.host_bearing = Eigen::Vector3d::UnitZ();
     point.inverse_depth = 0.2;
     if (id + 1 < count) point.seen_in = {id + 1};
-    map.points[id] = point;
+    map.points.emplace(id, std::move(point));
   }
   return map;
 }

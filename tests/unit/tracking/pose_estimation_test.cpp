@@ -172,5 +172,17 @@ TEST_F(PoseEstimation, TracksWithoutDepthHelpAcrossTheirEpipolarLines) {
   EXPECT_LT(error_helped, 0.7 * error_alone);
 }
 
+TEST(LargestDeviation, IsThatAlongTheWorstDirectionOfEither) {
+  const Eigen::Matrix3d turn = rotationExp({0.4, -1.1, 0.7}).toRotationMatrix();
+  const auto block = [&](double a, double b, double c) {
+    return Eigen::Matrix3d(turn * Eigen::Vector3d(a * a, b * b, c * c).asDiagonal() * turn.transpose());
+  };
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.topLeftCorner<3, 3>() = block(0.2, 0.01, 0.4);
+  covariance.bottomRightCorner<3, 3>() = block(0.03, 0.15, 0.02);
+  EXPECT_NEAR(largestDeviation(covariance, 2), 0.2, 1e-9);
+  EXPECT_NEAR(largestDeviation(covariance, 20), 0.15, 1e-9);
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "unit/tracking/plane_walk.h"
 
 namespace edgeslam {
@@ -251,6 +254,26 @@ TEST(Tracker, AnotherPlaceIsLostAndGivesNoKeyframeOfIt) {
   const TrackingOutcome back = trackFrame(run.tracker, 6);
   EXPECT_EQ(back.state, FrameState::tracking) << back.reason;
   EXPECT_FALSE(run.tracker.hasLostFrame());
+}
+
+// Points in a small part of the image fix a pose less well than was asked for.
+TEST(Tracker, AnUncertainPoseIsNotBelieved) {
+  const auto state = [](double largest_deviation) {
+    TrackerOptions options;
+    options.least_points_share = 0;
+    options.largest_deviation = largest_deviation;
+    Tracker tracker(camera, options);
+    MapView view = knownMap(trackFrame(tracker, 0).for_mapping);
+    const auto is_far_off = [](const ViewPoint& point) {
+      return (point.source_measurement.pixel - Eigen::Vector2d(camera.width / 2.0, camera.height / 2.0)).norm() > 30;
+    };
+    view.points.erase(std::remove_if(view.points.begin(), view.points.end(), is_far_off), view.points.end());
+    EXPECT_GT(view.points.size(), 6U);
+    adopt(tracker, view);
+    return trackFrame(tracker, 1).state;
+  };
+  EXPECT_EQ(state(std::numeric_limits<double>::infinity()), FrameState::tracking);
+  EXPECT_EQ(state(1e-3), FrameState::lost);
 }
 
 // The map points as they are measured in the frame at `pose`.
