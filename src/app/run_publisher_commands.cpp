@@ -132,8 +132,9 @@ void RunPublisher::saveMapInBackground(const MapPointer& map) {
   // What was saved before is worth more.
   if (map->points.empty()) return answerSaves(wishes, false, "there is no map yet");
   disk_work_.begin([this, map, wishes]() -> BackgroundWork::Completion {
-    const auto [saved, message] = save(*map, setup_.camera, setup_.map_file);
-    return [this, wishes, saved = saved, message = message] { answerSaves(wishes, saved, message); };
+    return [this, wishes, outcome = save(*map, setup_.camera, setup_.map_file)] {
+      answerSaves(wishes, outcome.first, outcome.second);
+    };
   });
 }
 

@@ -131,8 +131,9 @@ TEST(LoopSearch, AChangeOfScaleBeyondTheBoundIsRefusedEitherWay) {
 TEST(LoopSearch, TakesThePoseThatShowsMostOfTheOldSide) {
   const Map map = drifted();
   int more = 0;
-  for (const auto& [current, candidate] : {std::pair{kTurn + 1, 1}, {kTurn + 2, 2}, {kCurrent, kCandidate}}) {
-    const auto found_share = [&, current = current, candidate = candidate](int refined_poses) {
+  for (const auto& pair : {std::pair{kTurn + 1, 1}, {kTurn + 2, 2}, {kCurrent, kCandidate}}) {
+    const int current = pair.first, candidate = pair.second;
+    const auto found_share = [&](int refined_poses) {
       LoopVerificationOptions options = withoutDescriptors();
       options.search.refined_poses = refined_poses;
       const LoopVerification loop = verify(map, current, candidate, options);
