@@ -77,7 +77,8 @@ TEST(MapUncertainty, OfAKeyframeThatSharesNothingIsLarge) {
 }
 
 // Simulated measurements with the noise that they state, in many maps: the error of the last keyframe is one that its
-// uncertainty foretells.
+// uncertainty foretells. What its links leave out (the noise of the points' own bearings, that depths and poses go
+// together) makes the squared error seven times what they say alone; the options' factors make up for it.
 TEST(MapUncertainty, ForetellsTheErrorOfAnAdjustedMap) {
   const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
   const test::EdgeScene scene = test::framesOnAWall(8);
@@ -86,10 +87,9 @@ TEST(MapUncertainty, ForetellsTheErrorOfAnAdjustedMap) {
   test::Sight sight;
   sight.noise = 1;
   MapUncertaintyOptions options;
-  options.pose_factor = options.scale_factor = 1;  // these measurements are independent
   options.position_walk = options.rotation_walk = options.scale_walk = 0;
   double sum = 0;
-  constexpr int maps = 20;
+  constexpr int maps = 60;
   for (int trial = 0; trial < maps; ++trial) {
     test::Random random(static_cast<std::uint64_t>(100 + trial));
     Map map = test::keyframesOf(camera, scene, truth, sight, random);
@@ -104,7 +104,7 @@ TEST(MapUncertainty, ForetellsTheErrorOfAnAdjustedMap) {
     sum += error.dot(last.uncertainty.topLeftCorner<3, 3>().inverse() * error) / 3;
   }
   EXPECT_GT(sum / maps, 0.1);
-  EXPECT_LT(sum / maps, 4);
+  EXPECT_LT(sum / maps, 1);
 }
 
 }  // namespace
