@@ -12,6 +12,8 @@
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set
 #include <hwy/highway.h>
 
+#include "edges/edge_judgement-inl.h"
+
 // Row after row: all pixels are tested for a zero crossing (markRow), integers are gathered around those that have one
 // (gather), and from these, many at a time, follow position, normal and whether it is an edge (judge). Compiled without
 // fused multiplications, so that floating point too has the reference's bits.
@@ -32,13 +34,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Pixels = hn::ScalableTag<int16_t>;
 using Window = hn::CappedTag<int16_t, 8>;  // a row of the window to which a plane is fitted
 using WindowSums = hn::RepartitionToWide<Window>;
-using Floats = hn::ScalableTag<float>;
-using Integers = hn::RebindToSigned<Floats>;
-using FloatVector = hn::Vec<Floats>;
-using IntegerVector = hn::Vec<Integers>;
 
 constexpr int kLargestWindowRadius = 3;  // that fits a row of the window
-constexpr size_t kSummands = 4;
 
 // Steepness is judged before all else in 16 bits: the upper halves of the squares of the components of twice the
 // blurred image's gradient times kSquareScale, each cut off at kLargestComponent.
@@ -164,87 +161,9 @@ void gather(const DifferenceOfGaussians& images, int y, size_t count, EdgeCandid
   }
 }
 
-IntegerVector sumOfSummands(const std::vector<int32_t>& summands, size_t i) {
-  IntegerVector a, b, c, d;
-  hn::LoadInterleaved4(Integers(), &summands[kSummands * i], a, b, c, d);
-  return hn::Add(hn::Add(a, b), hn::Add(c, d));
-}
-
-struct Thresholds {
-  float squared_gradient;
-  int32_t imbalance;  // most |2 positive - all|
-  int32_t window;     // pixels
-};
-
-// What a vector of candidates is worth, and which of them are edges.
-struct Judged {
-  HWY_ATTR Judged() {}  // one that the compiler makes is not of the instruction set, and NEON vectors have constructors
-
-  FloatVector pixel_x;
-  FloatVector pixel_y;
-  FloatVector normal_x;
-  FloatVector normal_y;
-  FloatVector gradient;
-  FloatVector offset;
-  hn::Mask<Floats> is_edge;
-};
-
-Judged judge(const EdgeCandidates& candidates, size_t i, float y, const Thresholds& thresholds) {
-  const Floats d;
-  const Integers di;
-  const auto load = [&](const std::vector<int32_t>& values) HWY_ATTR { return hn::LoadU(di, &values[i]); };
-  const auto zero = hn::Zero(di);
-  Judged judged;
-
-  const IntegerVector gradient_x = load(candidates.gradient_x);
-  const IntegerVector gradient_y = load(candidates.gradient_y);
-  const FloatVector scale = hn::Set(d, 0.5F / kBlurScale);
-  const FloatVector x_component = hn::Mul(scale, hn::ConvertTo(d, gradient_x));
-  const FloatVector y_component = hn::Mul(scale, hn::ConvertTo(d, gradient_y));
-  const FloatVector squared = hn::Add(hn::Mul(x_component, x_component), hn::Mul(y_component, y_component));
-  judged.gradient = hn::Sqrt(squared);
-  judged.normal_x = hn::Div(x_component, judged.gradient);
-  judged.normal_y = hn::Div(y_component, judged.gradient);
-
-  // As offsetOfZero does: between this pixel and the one after it, or before it, whichever is not nearer to zero.
-  const IntegerVector here = load(candidates.here);
-  const IntegerVector before = load(candidates.before);
-  const IntegerVector after = load(candidates.after);
-  const auto sign_differs = [&](IntegerVector other) HWY_ATTR {
-    return hn::Xor(hn::VecFromMask(di, hn::Gt(here, zero)), hn::VecFromMask(di, hn::Gt(other, zero)));
-  };
-  const auto crosses_after = hn::AndNot(hn::Gt(hn::Abs(here), hn::Abs(after)), hn::MaskFromVec(sign_differs(after)));
-  const auto crosses_before = hn::And(hn::MaskFromVec(sign_differs(before)), hn::Lt(hn::Abs(here), hn::Abs(before)));
-  const IntegerVector fall = hn::IfThenElse(crosses_after, hn::Sub(here, after), hn::Sub(before, here));
-  judged.offset = hn::Div(hn::ConvertTo(d, here), hn::ConvertTo(d, fall));
-
-  // As isEdgeLike does.
-  const FloatVector slope_x = hn::ConvertTo(d, sumOfSummands(candidates.slope_x, i));
-  const FloatVector slope_y = hn::ConvertTo(d, sumOfSummands(candidates.slope_y, i));
-  const IntegerVector positive = sumOfSummands(candidates.positive, i);
-  const IntegerVector imbalance = hn::Abs(hn::Sub(hn::Add(positive, positive), hn::Set(di, thresholds.window)));
-  const FloatVector rise = hn::Add(hn::Mul(slope_x, judged.normal_x), hn::Mul(slope_y, judged.normal_y));
-  const FloatVector squared_slope = hn::Add(hn::Mul(slope_x, slope_x), hn::Mul(slope_y, slope_y));
-  const FloatVector least_squared_rise =
-      hn::Mul(hn::Set(d, kLeastSlopeAgreement * kLeastSlopeAgreement), squared_slope);
-  const auto rises = hn::And(hn::Gt(rise, hn::Zero(d)), hn::Ge(hn::Mul(rise, rise), least_squared_rise));
-
-  const auto along_row = hn::RebindMask(d, hn::Not(hn::Lt(hn::Abs(gradient_x), hn::Abs(gradient_y))));
-  const FloatVector way = hn::Mul(judged.offset, hn::IfThenElse(along_row, judged.normal_x, judged.normal_y));
-  judged.pixel_x = hn::Add(hn::ConvertTo(d, load(candidates.x)), hn::Mul(way, judged.normal_x));
-  judged.pixel_y = hn::Add(hn::Set(d, y), hn::Mul(way, judged.normal_y));
-
-  const auto crosses = hn::Or(crosses_after, crosses_before);
-  const auto balanced = hn::Lt(imbalance, hn::Set(di, thresholds.imbalance + 1));
-  const auto steep = hn::Ge(squared, hn::Set(d, thresholds.squared_gradient));
-  judged.is_edge = hn::And(hn::And(steep, rises), hn::RebindMask(d, hn::And(crosses, balanced)));
-  return judged;
-}
-
 // Adds those of the first `count` candidates of row y that are edges, and that there is room for.
 void addEdges(size_t count, int y, const Thresholds& thresholds, size_t most, EdgePixels& pixels,
               int32_t* HWY_RESTRICT index) {
-  constexpr size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
   HWY_ALIGN float pixel_x[kMostLanes], pixel_y[kMostLanes], normal_x[kMostLanes], normal_y[kMostLanes],
       gradient[kMostLanes], offset[kMostLanes];
   uint8_t bits[sizeof(uint64_t)] = {};

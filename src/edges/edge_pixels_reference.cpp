@@ -39,7 +39,8 @@ void addZeroCrossing(const DifferenceOfGaussians& images, int x, int y, const Ed
   if (squared < threshold * threshold || points.size() == most) return;
   // The grey gradient gives the normal: the DoG's own is thrice as noisy.
   const float steepness = std::sqrt(squared);
-  const Eigen::Vector2f normal = gradient / steepness;
+  // By component: on 32-bit ARM, Eigen's division of vectors is not right to the last bit.
+  const Eigen::Vector2f normal(gradient.x() / steepness, gradient.y() / steepness);
   const bool along_row = std::abs(normal.x()) >= std::abs(normal.y());
   const float offset = offsetOfZero(images.dog, x, y, along_row);
   if (std::isnan(offset)) return;
