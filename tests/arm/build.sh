@@ -14,7 +14,14 @@ done
 mkdir -p "$folder"
 if [[ ! -e $folder/sysroot.made ]]; then
   rm -rf "$folder/sysroot"
-  "$sources/toolchains/make-sysroot" arm64 "$folder/sysroot" > "$folder/sysroot.log" 2>&1 || { tail "$folder/sysroot.log"; exit 1; }
+  if ! "$sources/toolchains/make-sysroot" arm64 "$folder/sysroot" > "$folder/sysroot.log" 2>&1; then
+    tail "$folder/sysroot.log"
+    if grep -qE 'Failed to fetch|Could not (resolve|connect)|Temporary failure resolving|Unable to connect' "$folder/sysroot.log"; then
+      echo "skipped: no Debian mirror in reach"
+      exit 77
+    fi
+    exit 1
+  fi
   touch "$folder/sysroot.made"
 fi
 echo "sysroot: ${SECONDS} s"
