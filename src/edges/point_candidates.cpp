@@ -1,5 +1,7 @@
 #include "edges/point_candidates.h"
 
+#include <algorithm>
+
 namespace edgeslam {
 namespace {
 
@@ -32,8 +34,7 @@ PointCandidate makeCandidate(const cv::Mat& grey, const EdgeMap& edges, const Ed
   candidate.products = gradientProductsAround(grey, edge.pixel, options.tensor_window);
   const Eigenvalues values = eigenvalues(candidate.products);
   candidate.l2 = values.l2;
-  candidate.corner = values.l2 > static_cast<float>(options.corner_ratio) * values.l1 &&
-                     values.l2 > static_cast<float>(options.corner_strength);
+  candidate.corner = isCornerLike(values, options);
   if (candidate.corner) {
     const Eigen::Vector2f direction = structureTensor(candidate.products).direction;
     candidate.normal = direction.dot(edge.normal) < 0 ? Eigen::Vector2f(-direction) : direction;
@@ -44,6 +45,16 @@ PointCandidate makeCandidate(const cv::Mat& grey, const EdgeMap& edges, const Ed
 }
 
 }  // namespace
+
+bool isCornerLike(const Eigenvalues& values, const PointChoiceOptions& options) {
+  const auto noise = static_cast<float>(options.excess_noise);
+  const float l1 = values.l1 - noise, l2 = values.l2 - noise;
+  return l2 > static_cast<float>(options.corner_ratio) * l1 && l2 > static_cast<float>(options.corner_strength);
+}
+
+float informativeL2(float l2, const PointChoiceOptions& options) {
+  return std::max(l2 - static_cast<float>(options.noise + options.excess_noise), 1e-6F);
+}
 
 void findPointCandidates(const cv::Mat& grey, const EdgeMap& edges, const PointSpacing& spacing,
                          const PointChoiceOptions& options, std::vector<PointCandidate>& candidates) {

@@ -19,7 +19,8 @@ struct PointChoiceOptions {
   int tensor_window = 15;      // side of the structure tensor's window [px]
   double corner_ratio = 0.15;  // corner-like: l2 > corner_ratio * l1 ...
   double corner_strength = 6;  // ... and l2 > corner_strength [grey^2/px^2]
-  double noise = 4;            // of the structure tensor [grey^2/px^2]
+  double noise = 4;            // of the structure tensor, usually [grey^2/px^2]
+  double excess_noise = 0;     // what the image at hand has more than that (image_noise.h) [grey^2/px^2]
   double sigma_edge = 0.3;     // across an edge [px]
   double sigma_corner = 0.17;  // of a corner-like point, across its stronger direction [px]
   double border = 12;          // points keep this distance from the image's border [px]
@@ -41,6 +42,12 @@ struct PointCandidate {
   int chain = -1;             // of the edge point
   bool corner = false;
 };
+
+// Whether a point with these eigenvalues of its structure tensor is known in every direction.
+bool isCornerLike(const Eigenvalues& values, const PointChoiceOptions& options);
+
+// What of the smaller eigenvalue is not noise, at least 1e-6: it holds a point along its edge [grey^2/px^2].
+float informativeL2(float l2, const PointChoiceOptions& options);
 
 // Adds to `candidates` the points of `edges` that lie within the border of `grey` and are free.
 void findPointCandidates(const cv::Mat& grey, const EdgeMap& edges, const PointSpacing& spacing,

@@ -9,7 +9,6 @@ namespace edgeslam {
 namespace {
 
 constexpr size_t kDirections = 4;      // of an edge that are told apart, over half a turn
-constexpr float kLeastL2 = 1e-6F;      // [grey^2/px^2]
 constexpr float kUnknownAlong = 1000;  // standard deviation of a point that nothing holds along its edge [px]
 
 // Of the line that the normal lies on: 0 is level, 1 slants from the upper left to the lower right, 2 is upright.
@@ -28,8 +27,7 @@ ChosenPoint makePoint(const PointCandidate& candidate, const PointChoiceOptions&
   point.corner = candidate.corner;
   point.chain = candidate.chain;
   point.sigma_normal = static_cast<float>(point.corner ? options.sigma_corner : options.sigma_edge);
-  const float informative_l2 = std::max(point.tensor.l2 - static_cast<float>(options.noise), kLeastL2);
-  const float stretch = std::sqrt(std::max(1.0F, point.tensor.l1 / informative_l2));
+  const float stretch = std::sqrt(std::max(1.0F, point.tensor.l1 / informativeL2(point.tensor.l2, options)));
   point.sigma_tangent = std::min(point.sigma_normal * stretch, kUnknownAlong);
   return point;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "edges/image_noise.h"
 #include "tracking/measurement_accuracy.h"
 
 namespace edgeslam {
@@ -64,15 +65,17 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
   result.visible = static_cast<int>(visible.size());
   for (const VisiblePoint& candidate : visible) result.visible_corners += points[candidate.index].corner ? 1 : 0;
   const Pose camera_T_world = start.inverse();
+  const cv::Mat& grey = current.pyramid.levels[0];
+  const PointChoiceOptions accuracy = withNoiseOf(grey, options.accuracy);
   PoseObservations observations;
   for (const FoundPoint& found : findVisiblePoints(points, visible, current, edges, search)) {
     const SearchPoint& point = points[found.index];
-    const Track seen = accuracyAt(current.pyramid.levels[0], options.accuracy, found);
+    const Track seen = accuracyAt(grey, accuracy, found);
     // A corner must be one in both images to count as one.
     const bool corner = point.corner && seen.corner;
     Measurement measurement = corner ? measurementOf(point, found) : measurementOf(seen);
     if (!corner) {
-      measurement.sigma_normal = options.accuracy.sigma_edge;
+      measurement.sigma_normal = accuracy.sigma_edge;
       measurement.sigma_tangent = std::max<double>(seen.sigma_tangent, point.sigma_tangent);
     }
     result.matches.push_back({point.id, measurement, point.corner, keyframes[found.index]});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "edges/image_noise.h"
 #include "geometry/resectioning.h"
 
 namespace edgeslam {
@@ -142,7 +143,8 @@ std::vector<Relocalisation::Start> Relocalisation::startsByDescriptors(const Map
                                                                        const EdgeMap& edges) const {
   const cv::Mat& grey = current.pyramid.levels[0];
   std::vector<Eigen::Vector2f> pixels;
-  for (const ChosenPoint& point : choosePoints(grey, edges, {}, options_.points)) pixels.push_back(point.pixel);
+  for (const ChosenPoint& point : choosePoints(grey, edges, {}, withNoiseOf(grey, options_.points)))
+    pixels.push_back(point.pixel);
   std::vector<Start> starts;
   DescribedPoints frame;
   double described_roll = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "edges/image_noise.h"
 #include "tracking/measurement_accuracy.h"
 #include "tracking/point_following.h"
 
@@ -107,6 +108,7 @@ void Tracker::prepare(std::int64_t frame_index, std::int64_t time_ns, const cv::
   clock.finished(Stage::pyramid);
   if (!frame_.edges || frame_.edges.use_count() > 1) frame_.edges = edge_pool_.take();
   detectEdges(images->pyramid.levels[0], options_.edges, edge_workspace_, *frame_.edges);
+  points_ = withNoiseOf(images->pyramid.levels[0], options_.points);
   clock.finished(Stage::edges);
   frame_.tracks.clear();
   frame_.covariance.setZero();
@@ -163,7 +165,7 @@ bool Tracker::followAndLocate(StageClock& clock) {
 
   dropOutliers(pose);
   lockAlongEdges(camera_, view_, frame_.world_T_camera, options_.edge_lock, frame_.tracks);
-  for (Track& track : frame_.tracks) updateAccuracy(to.pyramid.levels[0], options_.points, track);
+  for (Track& track : frame_.tracks) updateAccuracy(to.pyramid.levels[0], points_, track);
   clock.finished(Stage::pose);
   return true;
 }

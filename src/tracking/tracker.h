@@ -166,6 +166,7 @@ class Tracker {
   RecyclingPool<EdgeMap> edge_pool_;
   EdgeWorkspace edge_workspace_;
   PointChoiceWorkspace choice_workspace_;
+  PointChoiceOptions points_;  // with the latest image's noise
   std::vector<Eigen::Vector2f> occupied_;
   std::vector<ChosenPoint> chosen_;
   std::vector<std::byte> scratch_memory_;

@@ -109,7 +109,7 @@ void Tracker::becomeKeyframe(TrackedState& frame, const char* reason, TrackingOu
 void Tracker::choosePointsIn(TrackedState& frame, KeyframeId keyframe) {
   occupied_.clear();
   for (const Track& track : frame.tracks) occupied_.push_back(track.pixel);
-  choosePoints(frame.images->pyramid.levels[0], *frame.edges, occupied_, options_.points, choice_workspace_, chosen_);
+  choosePoints(frame.images->pyramid.levels[0], *frame.edges, occupied_, points_, choice_workspace_, chosen_);
   for (const ChosenPoint& chosen : chosen_) {
     Track& track = frame.tracks.emplace_back(trackOf(chosen, options_.points.weigh_edges));
     track.id = next_point_++;

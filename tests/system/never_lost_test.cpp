@@ -110,6 +110,19 @@ TEST_P(FurnishedPlace, IsFoundAgainAfterTwoSecondsInTheDark) {
 INSTANTIATE_TEST_SUITE_P(Places, FurnishedPlace, ::testing::Values(hall, parlour),
                          [](const auto& place) { return place.param.name; });
 
+// A sensor that amplifies: bare walls, and what edges there are, of noise. The scale is not lost at the turns.
+TEST(DimCorridor, IsFollowedAtItsScale) {
+  const TemporaryFolder folder;
+  const std::string sequence = folderOf("dim_corridor");
+  const ReplayedRun result = replayed(sequence, folder.path("result"));
+  ASSERT_EQ(result.outcome.exit_code, 0) << result.outcome.messages;
+  const Trajectory truth = readTrajectory(sequence + "/groundtruth.txt");
+  EXPECT_LT(largestError(readTrajectory(result.folder + "/trajectory.txt"), truth), 0.07);
+  EXPECT_LT(largestError(readTrajectory(result.folder + "/trajectory_live.txt"), truth), 0.07);
+  const int last = static_cast<int>(result.states.size()) - 1;
+  EXPECT_LE(result.count("lost", 0, last) + result.count("predicted", 0, last), 3);
+}
+
 // Two places filmed one after the other, as if they were one: no loop joins them, and in the second no frame is taken
 // for one of the first.
 class TwoPlaces : public ::testing::TestWithParam<std::pair<std::string, std::string>> {};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "edges/image_noise.h"
 #include "unit/edges/synthetic_image.h"
 
 namespace edgeslam {
@@ -69,6 +70,16 @@ TEST(MeasurementAccuracy, NoiseTellsNothingOfThePlaceAlongAnEdge) {
   updateAccuracy(noisy, options, track);
   EXPECT_FALSE(track.corner);
   EXPECT_GT(track.sigma_tangent, 10 * track.sigma_normal);
+}
+
+TEST(MeasurementAccuracy, NorDoesMuchNoiseInDimLight) {
+  const cv::Mat dim = withNoise(renderLine(size, lineThrough(60, 50, 20), 60, 95), 5.0, 5);
+  Track track = trackAt(60, 50, {1, 0.3f});
+  updateAccuracy(dim, PointChoiceOptions(), track);
+  EXPECT_TRUE(track.corner) << "without the image's noise";
+  updateAccuracy(dim, withNoiseOf(dim, PointChoiceOptions()), track);
+  EXPECT_FALSE(track.corner);
+  EXPECT_GT(track.sigma_tangent, 5 * track.sigma_normal);
 }
 
 TEST(MeasurementAccuracy, SigmasStayFiniteOnAFlatImage) {
