@@ -104,7 +104,7 @@ class DaemonScale : public DaemonTest {
   }
 
   static constexpr int frames = 300;
-  const std::string drive_ = std::string(EDGESLAM_RUN_FOLDER) + "/tiled";
+  std::string drive_ = std::string(EDGESLAM_RUN_FOLDER) + "/tiled";
 };
 
 TEST_F(DaemonScale, ComesFromTheWheels) {
@@ -131,11 +131,13 @@ TEST_F(DaemonScale, OfWheelsOfAnotherClockIsNotTakenAndTold) {
 TEST_F(DaemonScale, ComesFromTheCamerasHeight) {
   const std::string configuration =
       configure(std::string(mounted) + "scale: {source: camera_height, camera_height_m: 0.9}\n");
-  // The drive lasts 10 s, the ground is known after 6 to 7 of them; on a busy computer mapping may not keep up.
+  // A drive lasts 10 s, the ground is known after 6 to 7 of them, but not in every one: it is refused where points lie
+  // below what is taken for it.
   std::vector<state_t> states;
   std::string said;
-  for (int attempt = 0; attempt < 3; ++attempt) {
-    if (attempt > 0) robot_ = std::make_unique<Robot>();
+  for (const char* recording : {"tiled_again", "tiled_once_more", "tiled"}) {
+    robot_ = std::make_unique<Robot>();
+    drive_ = std::string(EDGESLAM_RUN_FOLDER) + "/" + recording;
     const auto daemon = startOn(drive_, {"--config", configuration});
     states = drive(*daemon);
     said = daemon->said();
