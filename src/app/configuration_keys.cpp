@@ -61,7 +61,7 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"points.corner_strength", &points.corner_strength, "grey^2/px^2", 0, 10000,
        "... and smaller eigenvalue above this"},
       {"points.noise", &points.noise, "grey^2/px^2", 0, 10000,
-       "noise of the structure tensor that is usual; an image that has more tells so itself"},
+       "usual noise of the structure tensor; where an image has more, that is measured"},
       {"points.sigma_edge", &points.sigma_edge, "px", 0.01, 10, "standard deviation of a measurement across an edge"},
       {"points.sigma_corner", &points.sigma_corner, "px", 0.01, 10, "the same of a corner-like point"},
       {"points.border", &points.border, "px", 0, 200, "points keep this distance from the image's border"},
