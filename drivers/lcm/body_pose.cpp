@@ -20,26 +20,6 @@ bool isKnown(const Matrix6d& covariance) { return covariance.allFinite() && cova
 
 }  // namespace
 
-bool hasUsablePose(const FrameResult& result) {
-  const Pose& pose = result.world_T_camera;
-  return result.has_pose && pose.translation.allFinite() && pose.rotation.coeffs().allFinite() &&
-         pose.rotation.norm() > 1e-3;
-}
-
-std::optional<MeasuredPose> measuredPose(const FrameResult& result) {
-  if (!isGoodPose(result.state) || !hasUsablePose(result)) return std::nullopt;
-  MeasuredPose measured;
-  measured.time_ns = result.time_ns;
-  measured.world_T_camera = {result.world_T_camera.rotation.normalized(), result.world_T_camera.translation};
-  measured.covariance_camera = result.covariance;
-  const Pose& hanging = result.reference_T_camera;
-  if (hanging.translation.allFinite() && hanging.rotation.coeffs().allFinite() && hanging.rotation.norm() > 1e-3) {
-    measured.reference = result.reference;
-    measured.reference_T_camera = {hanging.rotation.normalized(), hanging.translation};
-  }
-  return measured;
-}
-
 Matrix6d carriedCovariance(const Matrix6d& covariance, const Pose& a_T_b) {
   const Eigen::Matrix3d b_R_a = a_T_b.rotation.conjugate().toRotationMatrix();
   Matrix6d carried = Matrix6d::Zero();
@@ -60,13 +40,6 @@ Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& rob
   covariance.topRows<3>() *= robot.scale.metres_per_unit;
   covariance.leftCols<3>() *= robot.scale.metres_per_unit;
   return carriedCovariance(covariance, cameraOnBody(robot).inverse());
-}
-
-Pose cameraMotion(const MeasuredPose& before, const MeasuredPose& now) {
-  if (before.reference >= 0 && before.reference == now.reference) {
-    return before.reference_T_camera.inverse() * now.reference_T_camera;
-  }
-  return before.world_T_camera.inverse() * now.world_T_camera;
 }
 
 std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredPose& now, const RobotSetup& robot) {

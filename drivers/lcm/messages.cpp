@@ -148,8 +148,6 @@ std::int8_t scaleNumber(ScaleKind kind) {
   return state_t::SCALE_UNKNOWN;
 }
 
-std::int64_t utimeOf(std::int64_t time_ns) { return time_ns / 1000 - (time_ns % 1000 < 0 ? 1 : 0); }
-
 std::string messageText(const std::string& text) {
   std::string kept = text.substr(0, longest_text);
   std::replace_if(

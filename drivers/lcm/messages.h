@@ -8,6 +8,7 @@
 #include "edgeslam/pose_t.hpp"
 #include "edgeslam/state_t.hpp"
 #include "edgeslam/update_t.hpp"
+#include "scale/utime.h"
 
 namespace edgeslam {
 
@@ -26,9 +27,6 @@ PublishedFrame frameMessages(const FrameResult& result, const RobotSetup& robot,
 // state_t's numbers.
 std::int8_t stateNumber(TrackingState state);
 std::int8_t scaleNumber(ScaleKind kind);
-
-// Microseconds, rounded down.
-std::int64_t utimeOf(std::int64_t time_ns);
 
 // What strings in messages hold: printable ASCII, other bytes become '?', at most 200 characters.
 std::string messageText(const std::string& text);

@@ -5,14 +5,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "geometry/pose.h"
+#include "scale/odometry_pose.h"
 
 namespace edgeslam {
-
-struct OdometryPose {
-  std::int64_t utime = 0;  // the robot's clock [us]
-  Pose local_T_body;       // translation [m]
-};
 
 // None where the bytes are no pose_t, or the pose none that can be: not finite, over 1e7 m away, a quaternion whose
 // norm is off 1 by over 0.01, a time stamp that is negative or over 1e17.

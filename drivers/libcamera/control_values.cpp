@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "dataset/text_file.h"
+#include "files/text_file.h"
 
 namespace edgeslam {
 namespace {

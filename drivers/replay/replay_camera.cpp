@@ -4,7 +4,7 @@
 #include <deque>
 #include <utility>
 
-#include "dataset/image_file.h"
+#include "frames/image_file.h"
 
 namespace edgeslam {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <memory>
 
-#include "dataset/frame_source.h"
 #include "drivers/frame_capture/live_camera.h"
+#include "frames/frame_source.h"
 
 namespace edgeslam {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "dataset/text_file.h"
 #include "drivers/v4l2/camera_controls.h"
+#include "files/text_file.h"
 
 namespace edgeslam {
 namespace {

@@ -10,16 +10,16 @@
 #include <set>
 
 #include "app/command_line.h"
-#include "app/configuration.h"
-#include "app/daemon_signals.h"
 #include "benchmark/benchmark_record.h"
 #include "benchmark/benchmark_run.h"
 #include "benchmark/known_calibration.h"
-#include "dataset/atomic_file.h"
-#include "dataset/frame_source.h"
-#include "dataset/recording_layout.h"
-#include "dataset/recording_source.h"
-#include "dataset/report.h"
+#include "configuration/configuration.h"
+#include "files/atomic_file.h"
+#include "frames/frame_source.h"
+#include "recording/recording_layout.h"
+#include "recording/recording_source.h"
+#include "report/report.h"
+#include "service/daemon_signals.h"
 
 namespace edgeslam {
 namespace {

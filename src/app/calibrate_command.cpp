@@ -8,14 +8,14 @@
 
 #include "app/calibration_frames.h"
 #include "app/command_line.h"
-#include "app/configuration.h"
 #include "app/end_signals.h"
-#include "app/open_camera.h"
 #include "calibration/board_pdf.h"
 #include "calibration/calibration.h"
 #include "calibration/calibration_text.h"
 #include "calibration/coverage.h"
-#include "dataset/atomic_file.h"
+#include "configuration/configuration.h"
+#include "drivers/cameras/open_camera.h"
+#include "files/atomic_file.h"
 
 namespace edgeslam {
 namespace {

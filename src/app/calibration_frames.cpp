@@ -10,7 +10,7 @@
 
 #include "calibration/calibration.h"
 #include "calibration/coverage.h"
-#include "dataset/folder_source.h"
+#include "frames/folder_source.h"
 
 namespace edgeslam {
 namespace {

@@ -6,8 +6,9 @@
 #include <string>
 
 #include "calibration/view_selection.h"
-#include "dataset/frame_source.h"
 #include "drivers/frame_capture/live_camera.h"
+#include "frames/frame_source.h"
+#include "recording/open_frame_source.h"
 
 namespace edgeslam {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "dataset/frame_folder_writer.h"
 #include "drivers/frame_capture/live_camera.h"
+#include "frames/frame_folder_writer.h"
 
 namespace edgeslam {
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line.h"
-#include "app/configuration.h"
-#include "app/configuration_capture.h"
+#include "configuration/configuration.h"
+#include "configuration/configuration_capture.h"
 
 namespace edgeslam {
 namespace {

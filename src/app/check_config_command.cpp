@@ -5,11 +5,11 @@
 #include <memory>
 
 #include "app/command_line.h"
-#include "app/configuration.h"
-#include "app/configuration_capture.h"
-#include "app/configuration_keys.h"
-#include "app/configuration_service.h"
-#include "dataset/calibration_file.h"
+#include "configuration/configuration.h"
+#include "configuration/configuration_capture.h"
+#include "configuration/configuration_keys.h"
+#include "configuration/configuration_service.h"
+#include "frames/calibration_file.h"
 
 namespace edgeslam {
 namespace {

@@ -14,7 +14,6 @@
 #include "app/cameras_command.h"
 #include "app/check_config_command.h"
 #include "app/evaluate_command.h"
-#include "app/failure_message.h"
 #include "app/listen_command.h"
 #include "app/record_command.h"
 #include "app/replay_command.h"
@@ -23,6 +22,7 @@
 #include "app/simulate_command.h"
 #include "app/view_command.h"
 #include "edgeslam/input_error.h"
+#include "service/failure_message.h"
 
 namespace edgeslam {
 namespace {

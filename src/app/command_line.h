@@ -1,13 +1,9 @@
 // The `edgeslam` command: its subcommands, and what its exit code says (design, section 6).
 #pragma once
 
-namespace edgeslam {
+#include "service/exit_code.h"
 
-enum ExitCode : int {
-  exit_done = 0,
-  exit_failed = 1,    // the run failed its own checks, or the program itself failed
-  exit_bad_input = 2  // wrong use, or input that cannot be used
-};
+namespace edgeslam {
 
 // Runs the subcommand that the arguments name and returns the exit code. Never throws: every failure becomes one line
 // on the standard error, `edgeslam: MESSAGE`.

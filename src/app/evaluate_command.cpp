@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "dataset/atomic_file.h"
+#include "files/atomic_file.h"
 
 namespace edgeslam {
 namespace {

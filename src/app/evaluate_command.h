@@ -4,7 +4,7 @@
 #include <CLI/App.hpp>
 #include <string>
 
-#include "dataset/evaluation.h"
+#include "evaluation/evaluation.h"
 
 namespace edgeslam {
 

@@ -11,10 +11,10 @@
 
 #include "app/camera_recording.h"
 #include "app/command_line.h"
-#include "app/configuration.h"
 #include "app/end_signals.h"
-#include "app/open_camera.h"
-#include "dataset/calibration_file.h"
+#include "configuration/configuration.h"
+#include "drivers/cameras/open_camera.h"
+#include "frames/calibration_file.h"
 
 namespace edgeslam {
 namespace {

@@ -12,17 +12,18 @@
 #include <opencv2/core/version.hpp>
 
 #include "app/command_line.h"
-#include "app/configuration.h"
-#include "app/frame_problem.h"
-#include "app/live_replay.h"
 #include "app/replay_outcome.h"
 #include "app/replay_progress.h"
-#include "app/run_publisher.h"
-#include "dataset/frame_source.h"
-#include "dataset/recording_source.h"
-#include "dataset/run_files.h"
-#include "dataset/saved_map.h"
+#include "configuration/configuration.h"
+#include "configuration/input_configuration.h"
+#include "frames/frame_problem.h"
+#include "map/saved_map.h"
 #include "pipeline/lockstep_run.h"
+#include "recording/open_frame_source.h"
+#include "recording/recording_source.h"
+#include "report/run_files.h"
+#include "service/live_replay.h"
+#include "service/run_publisher.h"
 
 namespace edgeslam {
 namespace {
@@ -38,14 +39,6 @@ struct ReplayArguments {
   std::string record;
   int drawings = 12;
 };
-
-Camera cameraOf(const FrameSource& source, const Configuration& configuration, const std::string& input) {
-  if (configuration.camera) return *configuration.camera;
-  if (source.camera()) return *source.camera();
-  throw InputError(
-      input +
-      ": no calibration: put a camera.yaml beside the frames, or give one in the configuration (camera.calibration)");
-}
 
 RunDescription describe(const ReplayArguments& arguments, const Configuration& configuration) {
   RunDescription description;
@@ -90,17 +83,6 @@ void processAll(FrameSource& source, const Camera& camera, LockstepRun& run) {
   progress.end();
 }
 
-RunDecisions runDecisions(const Decisions& recorded) {
-  RunDecisions decisions;
-  for (const UpdateTaken& update : recorded.updates) decisions.updates[update.frame_index] = update.number;
-  decisions.mapping_busy.insert(recorded.busy.begin(), recorded.busy.end());
-  for (const CorrectionApplied& correction : recorded.corrections) {
-    decisions.corrections[correction.message].push_back(correction.number);
-    decisions.snapshots.insert(correction.number);
-  }
-  return decisions;
-}
-
 // A run and the map that it leaves.
 struct Replayed {
   RunResult result;
@@ -110,16 +92,16 @@ struct Replayed {
 // A recording brings the map that its run went on with.
 std::string mapToGoOnWith(const ReplayArguments& arguments, const FrameSource& source) {
   if (!arguments.map_in.empty()) return arguments.map_in;
-  const auto* recording = dynamic_cast<const RecordingSource*>(&source);
-  const std::string brought = recording ? recording->recording().folder + "/" + recording_map_name : "";
+  const Recording* recording = source.recording();
+  const std::string brought = recording ? recording->folder + "/" + recording_map_name : "";
   return !brought.empty() && std::filesystem::exists(brought) ? brought : "";
 }
 
 Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Settings& settings,
                           const ReplayArguments& arguments) {
   LockstepRun run(camera, settings, source.size(), arguments.drawings);
-  if (const auto* recording = dynamic_cast<const RecordingSource*>(&source)) {
-    const Decisions& decisions = recording->recording().decisions;
+  if (const Recording* recording = source.recording()) {
+    const Decisions& decisions = recording->decisions;
     if (!decisions.note.empty()) std::cerr << "edgeslam: " << decisions.note << "\n";
     if (decisions.not_recorded == 0) run.repeat(runDecisions(decisions));
   }
@@ -180,15 +162,6 @@ void requireWritable(const std::string& folder) {
   }
 }
 
-// A recording brings the configuration that it was made with.
-Configuration configurationOf(const ReplayArguments& arguments, const FrameSource& source) {
-  if (!arguments.configuration.empty()) return readConfiguration(arguments.configuration);
-  if (const auto* recording = dynamic_cast<const RecordingSource*>(&source)) {
-    return readConfiguration(recording->recording().configuration_path);
-  }
-  return Configuration();
-}
-
 int runReplay(const ReplayArguments& arguments) {
   if (arguments.pace != 1 && !arguments.realtime) {
     throw InputError("--pace: only what runs live has a pace, add --realtime");
@@ -200,8 +173,8 @@ int runReplay(const ReplayArguments& arguments) {
     throw InputError("--lcm: only what runs live is published, add --realtime");
   }
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
-  const Configuration configuration = configurationOf(arguments, *source);
-  const Camera camera = cameraOf(*source, configuration, arguments.input);
+  const Configuration configuration = configurationFor(*source, arguments.configuration);
+  const Camera camera = cameraFor(*source, configuration, arguments.input);
   std::optional<Trajectory> ground_truth;
   if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "dataset/evaluation.h"
-#include "dataset/report.h"
 #include "edgeslam/input_error.h"
+#include "evaluation/evaluation.h"
+#include "report/report.h"
 
 namespace edgeslam {
 namespace {

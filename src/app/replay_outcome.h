@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "dataset/trajectory.h"
+#include "evaluation/trajectory.h"
 #include "pipeline/run_result.h"
 
 namespace edgeslam {

@@ -7,8 +7,8 @@
 #include "app/command_line.h"
 #include "benchmark/benchmark_record.h"
 #include "benchmark/comparison.h"
-#include "dataset/atomic_file.h"
-#include "dataset/report.h"
+#include "files/atomic_file.h"
+#include "report/report.h"
 
 namespace edgeslam {
 namespace {

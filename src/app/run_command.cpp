@@ -6,9 +6,10 @@
 #include <memory>
 
 #include "app/command_line.h"
-#include "app/daemon.h"
-#include "dataset/frame_source.h"
-#include "dataset/saved_map.h"
+#include "frames/frame_source.h"
+#include "map/saved_map.h"
+#include "recording/open_frame_source.h"
+#include "service/daemon.h"
 
 namespace edgeslam {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/command_line.h"
-#include "dataset/simulator.h"
-#include "dataset/simulator_folder.h"
+#include "simulator/simulator.h"
+#include "simulator/simulator_folder.h"
 
 namespace edgeslam {
 namespace {

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "app/command_line.h"
-#include "app/daemon.h"
-#include "dataset/frame_source.h"
-#include "dataset/recording_source.h"
+#include "configuration/input_configuration.h"
+#include "recording/open_frame_source.h"
+#include "service/daemon.h"
 
 namespace edgeslam {
 namespace {
@@ -17,29 +17,12 @@ struct ViewArguments {
   int port = -1;  // the configuration's
 };
 
-// A recording brings the configuration that it was made with.
-Configuration configurationOf(const ViewArguments& arguments, const FrameSource& source) {
-  if (!arguments.configuration.empty()) return readConfiguration(arguments.configuration);
-  if (const auto* recording = dynamic_cast<const RecordingSource*>(&source)) {
-    return readConfiguration(recording->recording().configuration_path);
-  }
-  return Configuration();
-}
-
-Camera cameraOf(const ViewArguments& arguments, const Configuration& configuration, const FrameSource& source) {
-  if (configuration.camera) return *configuration.camera;
-  if (source.camera()) return *source.camera();
-  throw InputError(
-      arguments.input +
-      ": no calibration: put a camera.yaml beside the frames, or give one in the configuration (camera.calibration)");
-}
-
 // Nothing is sent to a robot and nothing is written: it is for looking.
 DaemonSetup setupOf(const ViewArguments& arguments) {
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
   DaemonSetup setup;
-  setup.configuration = configurationOf(arguments, *source);
-  setup.camera = cameraOf(arguments, setup.configuration, *source);
+  setup.configuration = configurationFor(*source, arguments.configuration);
+  setup.camera = cameraFor(*source, setup.configuration, arguments.input);
   setup.capture.device = arguments.input;
   setup.capture.width = setup.camera.width;
   setup.capture.height = setup.camera.height;

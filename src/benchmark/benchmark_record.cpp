@@ -4,7 +4,7 @@
 #include <set>
 
 #include "benchmark/json_reader.h"
-#include "dataset/atomic_file.h"
+#include "files/atomic_file.h"
 
 namespace edgeslam {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "benchmark/figure_changes.h"
 #include "benchmark/page_assets.h"
-#include "dataset/display_frame.h"
-#include "dataset/evaluation.h"
-#include "dataset/page_template.h"
-#include "dataset/report_assets.h"
+#include "evaluation/evaluation.h"
+#include "report/display_frame.h"
+#include "report/page_template.h"
+#include "report/report_assets.h"
 
 namespace edgeslam {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "benchmark/json_reader.h"
-#include "dataset/text_file.h"
+#include "files/text_file.h"
 
 namespace edgeslam {
 namespace {

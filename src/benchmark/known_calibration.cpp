@@ -2,7 +2,7 @@
 
 #include <regex>
 
-#include "dataset/report_published.h"
+#include "report/report_published.h"
 
 namespace edgeslam {
 namespace {

@@ -1,5 +1,5 @@
 // The parts of the benchmark's pages that are the same for every run, embedded at build time. Style and charts are
-// those of report.html (dataset/report_assets.h).
+// those of report.html (report/report_assets.h).
 #pragma once
 
 #include <string_view>

@@ -9,7 +9,9 @@
 #include <map>
 #include <set>
 
-#include "dataset/frame_source.h"
+#include "frames/frame_source.h"
+#include "recording/open_frame_source.h"
+#include "recording/recording_source.h"
 
 namespace edgeslam {
 namespace {
@@ -23,6 +25,7 @@ bool hasCalibration(const fs::path& folder) {
 
 // A video or images alone may be anything: an illustration, the frames of the sequence above.
 bool isSequence(const fs::path& folder) {
+  if (isRecording(folder.string())) return true;
   switch (folderKind(folder.string())) {
     case FolderKind::none:
       return false;

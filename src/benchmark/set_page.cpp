@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmark/page_assets.h"
-#include "dataset/page_template.h"
-#include "dataset/report_assets.h"
-#include "dataset/report_published.h"
+#include "report/page_template.h"
+#include "report/report_assets.h"
+#include "report/report_published.h"
 
 namespace edgeslam {
 namespace {

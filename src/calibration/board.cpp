@@ -5,8 +5,8 @@
 #include <sstream>
 #include <utility>
 
-#include "dataset/text_file.h"
 #include "edgeslam/input_error.h"
+#include "files/text_file.h"
 
 namespace edgeslam {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "calibration/board_drawing.h"
-#include "dataset/text_file.h"
 #include "edgeslam/input_error.h"
+#include "files/text_file.h"
 
 namespace edgeslam {
 namespace {

@@ -10,6 +10,9 @@ namespace edgeslam {
 
 enum class CameraModel { pinhole_radial_tangential, kannala_brandt };
 
+// The longest side that an image may have [px]; more is a damaged file.
+constexpr int largest_camera_side = 32768;
+
 struct Camera {
   CameraModel model = CameraModel::pinhole_radial_tangential;
   int width = 0;                                    // [px]

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "dataset/calibration_file.h"
-#include "dataset/saved_map.h"
+#include "frames/calibration_file.h"
+#include "map/saved_map.h"
 #include "pipeline/map_records.h"
 
 namespace edgeslam {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/configuration.h"
+#include "configuration/configuration.h"
 #include "edgeslam/types.h"
 #include "map/map.h"
 #include "pipeline/frame_result.h"

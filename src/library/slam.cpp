@@ -3,8 +3,8 @@
 #include <limits>
 #include <utility>
 
-#include "dataset/saved_map.h"
 #include "library/conversion.h"
+#include "map/saved_map.h"
 #include "pipeline/lockstep_run.h"
 #include "pipeline/map_records.h"
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "edges/point_choice.h"
 #include "geometry/measurement.h"
 #include "geometry/uncertainty.h"
 #include "image/pyramid.h"

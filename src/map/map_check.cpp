@@ -112,7 +112,7 @@ std::string cameraProblem(const Camera& camera) {
   if (camera.model != CameraModel::pinhole_radial_tangential && camera.model != CameraModel::kannala_brandt) {
     return "camera: unknown model";
   }
-  if (camera.width < 1 || camera.height < 1 || std::max(camera.width, camera.height) > largest_image_side) {
+  if (camera.width < 1 || camera.height < 1 || std::max(camera.width, camera.height) > largest_camera_side) {
     return "camera: images of " + sizeText(camera.width, camera.height) + " pixels";
   }
   if (!isPositive(camera.fx) || !isPositive(camera.fy)) return "camera: the focal length must be greater than 0";

@@ -10,8 +10,6 @@ namespace edgeslam {
 
 // Much is kept by keyframe number, so numbers must not run away. At one keyframe a second this is half a year.
 constexpr KeyframeId largest_keyframe_id = (1 << 24) - 1;
-// Of images [px].
-constexpr int largest_image_side = 32768;
 
 // The first thing that is wrong, in words; empty where nothing is. Sizes are positive and bounded, numbers finite.
 std::string cameraProblem(const Camera& camera);

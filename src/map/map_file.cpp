@@ -118,7 +118,7 @@ cv::Size sizeInPng(std::string_view png) {
   for (std::size_t i = 0; i < 8; ++i) {
     sides[i / 4] = sides[i / 4] << 8 | static_cast<unsigned char>(png[start.size() + i]);
   }
-  if (sides[0] > largest_image_side || sides[1] > largest_image_side) return {};
+  if (sides[0] > largest_camera_side || sides[1] > largest_camera_side) return {};
   return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
 }
 

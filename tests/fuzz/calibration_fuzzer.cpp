@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dataset/calibration_file.h"
-#include "dataset/recording_layout.h"
 #include "edgeslam/input_error.h"
+#include "frames/calibration_file.h"
 #include "fuzz_input.h"
 #include "map/map_check.h"
+#include "recording/recording_layout.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace edgeslam;
@@ -18,7 +18,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     require(cameraProblem(camera).empty(), "a map of this camera can be saved: " + cameraProblem(camera));
     require(camera.cx >= 0 && camera.cx <= camera.width - 1, "the centre lies in the image");
     require(camera.cy >= 0 && camera.cy <= camera.height - 1, "the centre lies in the image");
-    const std::string written = folder.write("written.yaml", formatRecordedCamera(camera));
+    const std::string written = folder.write("written.yaml", formatCalibrationFile(camera));
     require(readCalibration(written) == camera, "a written calibration is read back to the last bit");
   } catch (const InputError& error) {
     requireMessage(error.what(), path);

@@ -1,5 +1,5 @@
 // Image files of any format: a grey image whose every pixel can be read, or one message.
-#include "dataset/image_file.h"
+#include "frames/image_file.h"
 #include "fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,7 +1,7 @@
 // Lists of images, TUM's rgb.txt, associations.txt and EuRoC's data.csv: frames with growing time stamps, or one
 // message.
-#include "dataset/folder_source.h"
 #include "edgeslam/input_error.h"
+#include "frames/folder_source.h"
 #include "fuzz_input.h"
 
 namespace {

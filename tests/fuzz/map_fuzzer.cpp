@@ -3,10 +3,10 @@
 // need not guess a checksum.
 #include <zlib.h>
 
-#include "dataset/saved_map.h"
 #include "edgeslam/input_error.h"
 #include "fuzz_input.h"
 #include "map/map_check.h"
+#include "map/saved_map.h"
 
 namespace {
 

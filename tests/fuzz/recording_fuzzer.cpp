@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 
-#include "dataset/recording_layout.h"
-#include "dataset/recording_source.h"
 #include "fuzz_input.h"
+#include "recording/recording_layout.h"
+#include "recording/recording_source.h"
 
 namespace {
 
@@ -83,7 +83,7 @@ void readFrames(Recording recording) {
     ++frames;
     require(frame->grey.empty() != frame->problem.empty(), "a frame has an image or a problem");
     if (!frame->problem.empty()) requireMessage(frame->problem, "");
-    const Camera& camera = source.recording().camera;
+    const Camera& camera = source.recording()->camera;
     require(frame->grey.empty() || (frame->grey.cols == camera.width && frame->grey.rows == camera.height),
             "images are of the camera's size");
   }
@@ -98,7 +98,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   requireReadBack(files[0].substr(0, files[0].find('\n')));
   folder.write(recording_decisions_name, withChecksums(files[0]));
   folder.write(recording_description_name, files[1]);
-  folder.write(recording_camera_name, files[2]);
+  folder.write(tum_camera_name, files[2]);
   try {
     Recording recording = readRecording(folder.path());
     requireOrder(recording);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dataset/evaluation.h"
-#include "dataset/trajectory.h"
 #include "edgeslam/input_error.h"
+#include "evaluation/evaluation.h"
+#include "evaluation/trajectory.h"
 #include "fuzz_input.h"
 
 namespace {

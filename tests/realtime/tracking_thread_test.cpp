@@ -10,10 +10,11 @@
 #include <optional>
 #include <thread>
 
-#include "dataset/frame_source.h"
-#include "dataset/simulator.h"
+#include "frames/frame_source.h"
 #include "pipeline/live_run.h"
 #include "realtime/watched_thread.h"
+#include "recording/open_frame_source.h"
+#include "simulator/simulator.h"
 
 namespace edgeslam {
 namespace {

@@ -14,7 +14,7 @@
 #include <fstream>
 #include <opencv2/core/utility.hpp>
 
-#include "dataset/saved_map.h"
+#include "map/saved_map.h"
 #include "soak/soak_minutes.h"
 #include "soak/soaked_run.h"
 

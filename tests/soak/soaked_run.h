@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/frame_source.h"
+#include "frames/frame_source.h"
 #include "pipeline/live_run.h"
 
 namespace edgeslam {

@@ -28,17 +28,17 @@ SOURCES = {
     "src/places/relocalisation.cpp": [],
     "src/places/guided_search.cpp": [],
     "src/map/map_view.cpp": [],
-    "src/map/ground_plane.cpp": [],
-    "src/app/frame_problem.cpp": [],
-    "src/app/scale_estimate.cpp": [],
-    "src/app/scale_from_camera_height.cpp": [],
-    "src/app/scale_from_odometry.cpp": [],
-    "src/app/scale_search.cpp": ["odometry", "camera_height"],  # values of scale.source
-    "src/app/run_publisher_scale.cpp": [  # lines of the log
+    "src/scale/ground_plane.cpp": [],
+    "src/frames/frame_problem.cpp": [],
+    "src/scale/scale_estimate.cpp": [],
+    "src/scale/scale_from_camera_height.cpp": [],
+    "src/scale/scale_from_odometry.cpp": [],
+    "src/scale/scale_search.cpp": ["odometry", "camera_height"],  # values of scale.source
+    "src/service/run_publisher_scale.cpp": [  # lines of the log
         "the scale is %.6g metres a map unit, standard deviation %.2g %%",
         "the scale is unknown again: another map was begun", "the scale is not known yet: ",
         "the scale is not renewed: "],
-    "src/dataset/image_file.cpp": [],
+    "src/frames/image_file.cpp": [],
     "drivers/lcm/messages.cpp": [],
     "drivers/frame_capture/grey_conversion.cpp": [],
     "drivers/frame_capture/jpeg_decoder.cpp": ["extraneous bytes before marker 0xd9"],  # a warning that is let pass
@@ -64,9 +64,9 @@ SOURCES = {
 }
 # Of sources that are mostly about other things: the literals that are pieces of reasons.
 SINGLE_PIECES = {
-    "src/dataset/folder_source.cpp": ["those before are"],
-    "src/dataset/recording_source.cpp": ["the camera's frame was unreadable", " says"],
-    "src/dataset/video_source.cpp": ["cannot be decoded", ": frame ", "those before are"],
+    "src/frames/folder_source.cpp": ["those before are"],
+    "src/recording/recording_source.cpp": ["the camera's frame was unreadable", " says"],
+    "src/frames/video_source.cpp": ["cannot be decoded", ": frame ", "those before are"],
 }
 # Other sources that give reasons to a `reason`: of loops, keyframes, recordings, not of a frame.
 REASONS_OF_OTHERS = {

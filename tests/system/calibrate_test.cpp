@@ -4,7 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "dataset/calibration_file.h"
+#include "frames/calibration_file.h"
 #include "system/program.h"
 #include "unit/calibration/rendered_board.h"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "dataset/evaluation.h"
-#include "dataset/trajectory.h"
+#include "evaluation/evaluation.h"
+#include "evaluation/trajectory.h"
 #include "system/program.h"
 
 namespace edgeslam {

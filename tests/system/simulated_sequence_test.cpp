@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "dataset/evaluation.h"
-#include "dataset/trajectory.h"
+#include "evaluation/evaluation.h"
+#include "evaluation/trajectory.h"
 #include "system/program.h"
 #include "system/surfaces.h"
 

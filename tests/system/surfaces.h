@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/similarity.h"
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 

@@ -8,7 +8,8 @@
 #include <exception>
 #include <iostream>
 
-#include "dataset/frame_source.h"
+#include "frames/frame_source.h"
+#include "recording/open_frame_source.h"
 #include "vm/loopback_feeder.h"
 
 namespace edgeslam {

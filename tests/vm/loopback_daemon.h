@@ -6,8 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include "dataset/evaluation.h"
-#include "dataset/frame_source.h"
+#include "evaluation/evaluation.h"
+#include "frames/frame_source.h"
+#include "recording/open_frame_source.h"
 #include "system/daemon/robot.h"
 #include "system/lcm/background_process.h"
 #include "system/lcm/own_network.h"

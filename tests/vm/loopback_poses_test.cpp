@@ -3,10 +3,10 @@
 #include <array>
 #include <opencv2/core.hpp>
 
-#include "app/configuration.h"
-#include "dataset/recording_source.h"
+#include "configuration/configuration.h"
 #include "drivers/lcm/messages.h"
 #include "pipeline/lockstep_run.h"
+#include "recording/recording_source.h"
 #include "system/program.h"
 #include "vm/loopback_daemon.h"
 

@@ -5,9 +5,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "app/open_camera.h"
-#include "dataset/simulator.h"
+#include "drivers/cameras/open_camera.h"
 #include "drivers/frame_capture/reopening_camera.h"
+#include "simulator/simulator.h"
 #include "vm/loopback_feeder.h"
 #include "vm/vivid_device.h"
 

@@ -96,7 +96,7 @@ cp -r "$here"/../../{src,drivers,include} "$trixie/project/"
 cp "$here/libcamera_test.cpp" "$trixie/project/tests/vm/"
 chroot "$trixie" sh -c 'cd /project && g++ -std=c++17 -O1 -Wall -Wextra -Werror -I. -Isrc -Iinclude -isystem /usr/include/opencv4 \
   -isystem /usr/include/libcamera tests/vm/libcamera_test.cpp drivers/frame_capture/*.cpp drivers/libcamera/*.cpp \
-  src/dataset/text_file.cpp -o libcamera_tests -lgtest -lgtest_main -lcamera -lcamera-base -lturbojpeg -lopencv_core'
+  src/files/text_file.cpp -o libcamera_tests -lgtest -lgtest_main -lcamera -lcamera-base -lturbojpeg -lopencv_core'
 mkdir -p "$trixie/usr/share/libcamera/pipeline/virtual"
 cat > "$trixie/usr/share/libcamera/pipeline/virtual/virtual.yaml" <<'YAML'
 "Virtual0":

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/cameras_command.h"
-#include "app/open_camera.h"
+#include "drivers/cameras/open_camera.h"
 #include "drivers/v4l2/offered_formats.h"
 #include "drivers/v4l2/v4l2_camera.h"
 #include "vm/vivid_device.h"

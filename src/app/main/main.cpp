@@ -2,7 +2,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "app/command_line.h"
-#include "app/failure_message.h"
+#include "service/failure_message.h"
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);           // the same sums in the same order on any machine

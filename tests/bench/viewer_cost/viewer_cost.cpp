@@ -9,9 +9,10 @@
 #include <memory>
 #include <thread>
 
-#include "dataset/frame_source.h"
 #include "drivers/viewer/viewer.h"
+#include "frames/frame_source.h"
 #include "pipeline/live_run.h"
+#include "recording/open_frame_source.h"
 #include "unit/viewer/raw_client.h"
 
 namespace edgeslam {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "geometry/similarity.h"
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

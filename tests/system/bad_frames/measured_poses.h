@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/trajectory.h"
+#include "evaluation/trajectory.h"
 
 namespace edgeslam {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 

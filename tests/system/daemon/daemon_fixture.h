@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "dataset/evaluation.h"
+#include "evaluation/evaluation.h"
 #include "system/daemon/robot.h"
 #include "system/lcm/background_process.h"
 #include "system/lcm/own_network.h"

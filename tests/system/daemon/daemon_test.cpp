@@ -3,8 +3,9 @@
 
 #include <chrono>
 
-#include "dataset/frame_source.h"
-#include "dataset/saved_map.h"
+#include "frames/frame_source.h"
+#include "map/saved_map.h"
+#include "recording/open_frame_source.h"
 #include "system/daemon/daemon_fixture.h"
 
 namespace edgeslam {

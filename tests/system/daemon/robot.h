@@ -12,7 +12,6 @@
 #include <thread>
 #include <vector>
 
-#include "dataset/trajectory.h"
 #include "edgeslam/command_answer_t.hpp"
 #include "edgeslam/command_t.hpp"
 #include "edgeslam/map_part_t.hpp"
@@ -20,6 +19,7 @@
 #include "edgeslam/state_t.hpp"
 #include "edgeslam/status_t.hpp"
 #include "edgeslam/update_t.hpp"
+#include "evaluation/trajectory.h"
 #include "unit/lcm/comes_true.h"
 
 namespace edgeslam {

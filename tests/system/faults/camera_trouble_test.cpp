@@ -2,7 +2,8 @@
 // says what is wrong, poses are never told twice or backwards, and the same map is gone on with.
 #include <gtest/gtest.h>
 
-#include "dataset/frame_source.h"
+#include "frames/frame_source.h"
+#include "recording/open_frame_source.h"
 #include "system/daemon/daemon_fixture.h"
 #include "system/faults/faulty_camera.h"
 #include "system/faults/file_faults.h"

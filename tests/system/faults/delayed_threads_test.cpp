@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "dataset/recording_source.h"
+#include "recording/recording_source.h"
 #include "system/daemon/daemon_fixture.h"
 #include "system/program.h"
 

@@ -2,8 +2,8 @@
 // recording and saving come back.
 #include <gtest/gtest.h>
 
-#include "dataset/recording_source.h"
-#include "dataset/saved_map.h"
+#include "map/saved_map.h"
+#include "recording/recording_source.h"
 #include "system/faults/faulty_daemon.h"
 
 namespace edgeslam {

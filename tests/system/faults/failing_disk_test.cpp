@@ -8,13 +8,14 @@
 #include <cstring>
 #include <functional>
 
-#include "dataset/file_set.h"
-#include "dataset/frame_folder_writer.h"
-#include "dataset/frame_source.h"
-#include "dataset/saved_map.h"
+#include "files/file_set.h"
+#include "frames/frame_folder_writer.h"
+#include "frames/frame_source.h"
+#include "map/saved_map.h"
+#include "recording/open_frame_source.h"
 #include "system/faults/file_faults.h"
-#include "unit/dataset/made_recording.h"
 #include "unit/map/made_map.h"
+#include "unit/recording/made_recording.h"
 
 namespace edgeslam {
 namespace {

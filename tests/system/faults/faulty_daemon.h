@@ -1,7 +1,7 @@
 // `edgeslam run` on frames that do not end soon, its disk failing when a test says so.
 #pragma once
 
-#include "dataset/recording_source.h"
+#include "recording/recording_source.h"
 #include "system/daemon/daemon_fixture.h"
 #include "system/edited_sequence.h"
 #include "system/faults/file_faults.h"

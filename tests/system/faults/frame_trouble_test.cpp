@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "dataset/recording_source.h"
+#include "recording/recording_source.h"
 #include "system/faults/faulty_daemon.h"
 
 namespace edgeslam {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "dataset/saved_map.h"
+#include "map/saved_map.h"
 #include "system/faults/faulty_daemon.h"
 
 namespace edgeslam {

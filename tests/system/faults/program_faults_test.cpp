@@ -1,9 +1,10 @@
 // The whole program where the power goes or the memory ends: what it had saved is there, and what it says is one line.
 #include <gtest/gtest.h>
 
-#include "dataset/frame_source.h"
-#include "dataset/recording_source.h"
-#include "dataset/saved_map.h"
+#include "frames/frame_source.h"
+#include "map/saved_map.h"
+#include "recording/open_frame_source.h"
+#include "recording/recording_source.h"
 #include "system/faults/file_faults.h"
 #include "system/program.h"
 

@@ -5,8 +5,9 @@
 #include <deque>
 #include <opencv2/core.hpp>
 
-#include "dataset/frame_source.h"
-#include "unit/dataset/temporary_folder.h"
+#include "frames/frame_source.h"
+#include "recording/open_frame_source.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/configuration.h"
-#include "unit/dataset/temporary_folder.h"
+#include "configuration/configuration.h"
+#include "unit/files/temporary_folder.h"
 #include "unit/v4l2/fake_driver.h"
 
 namespace edgeslam {

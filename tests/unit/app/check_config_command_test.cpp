@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "app/command_line.h"
-#include "app/configuration.h"
-#include "unit/dataset/temporary_folder.h"
+#include "configuration/configuration.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

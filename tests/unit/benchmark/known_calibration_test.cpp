@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dataset/calibration_file.h"
+#include "frames/calibration_file.h"
 
 namespace edgeslam {
 namespace {

@@ -1,12 +1,12 @@
-// The files of a run made by hand (unit/dataset/made_run.h), in a folder as replay leaves it.
+// The files of a run made by hand (unit/report/made_run.h), in a folder as replay leaves it.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
-#include "dataset/run_files.h"
-#include "dataset/run_summary.h"
-#include "unit/dataset/made_run.h"
-#include "unit/dataset/temporary_folder.h"
+#include "report/run_files.h"
+#include "report/run_summary.h"
+#include "unit/files/temporary_folder.h"
+#include "unit/report/made_run.h"
 
 namespace edgeslam {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

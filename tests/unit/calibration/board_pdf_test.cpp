@@ -9,7 +9,7 @@
 #include "calibration/board_detection.h"
 #include "calibration/board_drawing.h"
 #include "unit/calibration/rendered_board.h"
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

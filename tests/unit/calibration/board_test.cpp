@@ -7,7 +7,7 @@
 #include "calibration/board_drawing.h"
 #include "calibration/marker_detection.h"
 #include "unit/calibration/rendered_board.h"
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "calibration/calibration.h"
 #include "unit/calibration/rendered_board.h"
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

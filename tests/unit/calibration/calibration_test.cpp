@@ -6,10 +6,10 @@
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/calibration_text.h"
-#include "dataset/calibration_file.h"
-#include "dataset/frame_source.h"
+#include "frames/calibration_file.h"
+#include "frames/frame_source.h"
 #include "unit/calibration/rendered_board.h"
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {
@@ -103,7 +103,7 @@ TEST(Calibration, OfTheSharedBoardIsBetterThanThePlainOne) {
   const std::string folder = std::string(EDGESLAM_SOURCE_DIR) + "/../shared/data/calib_board";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   const Board board = parseBoard("chessboard:9x6:30mm");
-  const std::unique_ptr<FrameSource> source = openFrameSource(folder);
+  const std::unique_ptr<FrameSource> source = openFrames(folder);
   ViewSelection selection(board, {});
   while (const std::optional<Frame> frame = source->next()) selection.add(frame->index, frame->time_ns, frame->grey);
   selection.end();

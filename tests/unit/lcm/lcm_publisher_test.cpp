@@ -7,7 +7,7 @@
 #include <map>
 
 #include "drivers/lcm/messages.h"
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 #include "unit/lcm/comes_true.h"
 #include "unit/lcm/made_frames.h"
 

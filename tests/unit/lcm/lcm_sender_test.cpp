@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "edgeslam/state_t.hpp"
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 #include "unit/lcm/comes_true.h"
 
 namespace edgeslam {

@@ -4,7 +4,7 @@
 #include <linux/capability.h>
 #include <unistd.h>
 
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {

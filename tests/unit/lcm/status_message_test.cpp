@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "edgeslam/state_t.hpp"
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 #include "unit/lcm/made_frames.h"
 
 namespace edgeslam {

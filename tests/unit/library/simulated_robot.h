@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "dataset/simulator.h"
 #include "edgeslam/types.h"
-#include "unit/dataset/temporary_folder.h"
+#include "simulator/simulator.h"
+#include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/configuration.h"
+#include "configuration/configuration.h"
 #include "pipeline/lockstep_run.h"
 #include "unit/library/simulated_robot.h"
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "dataset/evaluation.h"
-#include "dataset/simulator.h"
+#include "evaluation/evaluation.h"
 #include "pipeline/lockstep_run.h"
+#include "simulator/simulator.h"
 
 namespace edgeslam {
 namespace {

@@ -8,9 +8,9 @@
 #include <chrono>
 #include <thread>
 
-#include "dataset/simulator.h"
 #include "pipeline/lockstep_run.h"
 #include "pipeline/run_record.h"
+#include "simulator/simulator.h"
 
 namespace edgeslam {
 namespace {

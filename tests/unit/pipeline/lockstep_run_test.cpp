@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <set>
 
-#include "dataset/simulator.h"
+#include "simulator/simulator.h"
 
 namespace edgeslam {
 namespace {

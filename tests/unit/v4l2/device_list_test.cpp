@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "unit/dataset/temporary_folder.h"
+#include "unit/files/temporary_folder.h"
 #include "unit/v4l2/fake_driver.h"
 
 namespace edgeslam {

@@ -1,0 +1,264 @@
+#include "configuration/configuration.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "configuration/configuration_camera.h"
+#include "configuration/configuration_capture.h"
+#include "configuration/configuration_document.h"
+#include "configuration/configuration_keys.h"
+#include "configuration/configuration_service.h"
+#include "files/key_suggestion.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr std::size_t largest_file = 1 << 20;  // [bytes]
+constexpr char include_key[] = "include";
+
+std::string readText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": cannot be opened");
+  std::string text;
+  std::array<char, 4096> block{};
+  while (file && text.size() <= largest_file) {
+    file.read(block.data(), block.size());
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  if (file.bad() || (text.empty() && !file.eof())) throw InputError(path + ": cannot be read (a folder?)");
+  if (text.size() > largest_file) throw InputError(path + ": over 1 MiB, so it is no configuration");
+  return text;
+}
+
+// Reads one file's document; all that is wrong goes to `problems`.
+class Reader {
+ public:
+  Reader(Configuration& configuration, std::vector<ConfigurationProblem>& problems)
+      : configuration_(configuration), problems_(problems), keys_(configurationKeys(configuration.settings)) {
+    for (const ConfigurationKey& key : keys_) {
+      sections_.insert(key.path.substr(0, key.path.find('.')));
+      if (!key.isHeading()) names_.push_back(key.path);
+    }
+    for (const std::string& name : cameraKeys()) names_.push_back(name);
+    for (const std::string& name : captureKeys()) names_.push_back(name);
+    for (const std::string& name : serviceKeys()) names_.push_back(name);
+    sections_.insert({"camera", "capture"});
+    sections_.insert(serviceSections().begin(), serviceSections().end());
+  }
+
+  void readDocument(const YAML::Node& document) {
+    if (document.IsNull()) return;
+    if (!document.IsMap()) return tell(document.Mark().line, "a mapping of sections is expected here");
+    if (isCalibration(document)) {
+      return tell(-1, "is a camera's calibration; a configuration names it by camera.calibration");
+    }
+    forEachKey(document, "", [this](const std::string& name, const YAML::Node& key, const YAML::Node& value) {
+      if (name == include_key) return;  // read before
+      if (sections_.count(name) == 0) return tellUnknown(key.Mark().line, name);
+      readSection(name, key.Mark().line, value);
+    });
+  }
+
+ private:
+  void tell(int line, const std::string& problem) { problems_.push_back({line, problem}); }
+
+  void tellUnknown(int line, const std::string& name) {
+    std::vector<std::string> candidates = names_;
+    if (name.find('.') == std::string::npos) candidates.insert(candidates.end(), sections_.begin(), sections_.end());
+    const std::string meant = closestKey(name, candidates);
+    tell(line, name + " is not a key" + (meant.empty() ? "" : "; did you mean " + meant + "?"));
+  }
+
+  template <typename Use>
+  void forEachKey(const YAML::Node& mapping, const std::string& prefix, const Use& use) {
+    std::map<std::string, int> seen;  // line of each name
+    for (const auto& entry : mapping) {
+      const int line = entry.first.Mark().line;
+      if (!entry.first.IsScalar()) {
+        tell(line, "a key must be a plain word");
+        continue;
+      }
+      const std::string name = prefix + entry.first.Scalar();
+      const auto [first, is_new] = seen.emplace(name, line);
+      if (!is_new) {
+        tell(line, name + " is given twice; first in line " + std::to_string(first->second + 1));
+        continue;
+      }
+      use(name, entry.first, entry.second);
+    }
+  }
+
+  void readSection(const std::string& section, int line, const YAML::Node& node) {
+    if (node.IsNull()) return;  // all of its keys commented out
+    if (!node.IsMap()) return tell(line, section + ": a mapping of keys is expected");
+    forEachKey(node, section + ".", [this](const std::string& name, const YAML::Node& key, const YAML::Node& value) {
+      readKey(name, key.Mark().line, value);
+    });
+    if (section == "camera") {
+      readCameraSection(node, configuration_, [this](int at, const std::string& problem) { tell(at, problem); });
+    }
+    if (section == "capture") {
+      readCaptureSection(node, configuration_.capture,
+                         [this](int at, const std::string& problem) { tell(at, problem); });
+    }
+    const std::vector<std::string>& sections = serviceSections();
+    if (std::find(sections.begin(), sections.end(), section) != sections.end()) readServiceSection(section, node);
+  }
+
+  void readServiceSection(const std::string& section, const YAML::Node& node) {
+    edgeslam::readServiceSection(section, node, configuration_,
+                                 [this](int at, const std::string& problem) { tell(at, problem); });
+  }
+
+  void readKey(const std::string& name, int line, const YAML::Node& value) {
+    if (std::find(names_.begin(), names_.end(), name) == names_.end()) return tellUnknown(line, name);
+    const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const auto& k) { return k.path == name; });
+    if (key == keys_.end()) return;  // of a section with a reader of its own
+    std::string wrong;
+    if (!value.IsScalar()) {
+      wrong = value.IsNull() ? "has no value" : "a list or mapping";
+    } else if (value.Tag() != "?") {  // quoted, or marked as of another type
+      wrong = "\"" + value.Scalar() + "\" is a text";
+    } else {
+      wrong = setValue(*key, value.Scalar());
+    }
+    if (!wrong.empty()) tell(line, name + ": " + wrong + "; expected " + expectedValue(*key));
+  }
+
+  Configuration& configuration_;
+  std::vector<ConfigurationProblem>& problems_;
+  std::vector<ConfigurationKey> keys_;
+  std::vector<std::string> names_;  // of all keys, with their section
+  std::set<std::string> sections_;
+};
+
+std::string formatted(const ConfigurationProblem& problem, const std::string& path) {
+  const std::string line = problem.line < 0 ? "" : ":" + std::to_string(problem.line + 1);
+  return InputError::oneLine(path + line + ": " + problem.text);
+}
+
+void readFile(const std::string& path, bool may_include, Configuration& configuration,
+              std::vector<std::string>& problems);
+
+// What is wrong with the key itself; of the file it names, to `problems`.
+std::optional<ConfigurationProblem> readIncluded(const YAML::Node& node, bool may_include, const std::string& path,
+                                                 Configuration& configuration, std::vector<std::string>& problems) {
+  const int line = node.Mark().line;
+  if (!may_include) return ConfigurationProblem{line, "include: an included file includes no other"};
+  if (!node.IsScalar() || node.Scalar().empty())
+    return ConfigurationProblem{line, "include: the path of a file is expected"};
+  const std::filesystem::path included = std::filesystem::path(path).parent_path() / node.Scalar();
+  std::error_code error;
+  if (std::filesystem::exists(included, error) && !std::filesystem::is_regular_file(included, error)) {
+    return ConfigurationProblem{line, "include: " + node.Scalar() + " is no file"};  // a pipe would be waited for
+  }
+  readFile(included.string(), false, configuration, problems);
+  return std::nullopt;
+}
+
+void readDocuments(const std::string& path, bool may_include, Configuration& configuration,
+                   std::vector<ConfigurationProblem>& found, std::vector<std::string>& problems) {
+  try {
+    const std::string text = readText(path);
+    if (const auto second = secondDocument(text)) found.push_back(*second);
+    const YAML::Node document = YAML::Load(text);
+    if (document.IsMap() && document[include_key]) {
+      const auto wrong = readIncluded(document[include_key], may_include, path, configuration, problems);
+      if (wrong) found.push_back(*wrong);
+    }
+    configuration.source = path;
+    Reader(configuration, found).readDocument(document);
+  } catch (const YAML::Exception& error) {
+    found.push_back({error.mark.line, "is not YAML: " + error.msg});
+  }
+}
+
+// Over what the configuration has already.
+void readFile(const std::string& path, bool may_include, Configuration& configuration,
+              std::vector<std::string>& problems) {
+  configuration.source = path;
+  std::vector<ConfigurationProblem> found;
+  try {
+    readDocuments(path, may_include, configuration, found, problems);
+  } catch (const InputError& error) {
+    problems.emplace_back(error.what());
+    return;
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const ConfigurationProblem& a, const ConfigurationProblem& b) { return a.line < b.line; });
+  for (const ConfigurationProblem& problem : found) problems.push_back(formatted(problem, path));
+}
+
+void appendSettings(std::string& text, Settings settings, bool documented) {
+  std::string section;
+  for (const ConfigurationKey& key : configurationKeys(settings)) {
+    if (key.isHeading()) {
+      if (documented) text += "\n# " + key.documentation + ".";
+      continue;
+    }
+    const std::size_t dot = key.path.find('.');
+    if (key.path.substr(0, dot) != section) {
+      section = key.path.substr(0, dot);
+      text += (documented ? "\n" : "") + section + ":\n";
+    }
+    if (documented) text += "  # " + key.documentation + " (" + expectedValue(key) + ")\n";
+    text += "  " + key.path.substr(dot + 1) + ": " + valueText(key.field) + "\n";
+  }
+}
+
+}  // namespace
+
+Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems) {
+  Configuration configuration;
+  readFile(path, true, configuration, problems);
+  return configuration;
+}
+
+Configuration readConfiguration(const std::string& path) {
+  std::vector<std::string> problems;
+  Configuration configuration = readConfiguration(path, problems);
+  if (problems.empty()) return configuration;
+  if (problems.size() == 1) throw InputError(problems.front());
+  throw InputError(problems.front() + " (the first of " + std::to_string(problems.size()) +
+                   " problems; `edgeslam check-config` lists them)");
+}
+
+bool isCalibrationFile(const std::string& path) {
+  try {
+    return isCalibration(YAML::Load(readText(path)));
+  } catch (const YAML::Exception&) {
+    return false;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+std::string formatConfiguration(const Configuration& configuration) {
+  std::string text = formatCameraSection(configuration) + formatCaptureSection(configuration.capture) +
+                     formatServiceSections(configuration);
+  appendSettings(text, configuration.settings, false);
+  return text;
+}
+
+std::string defaultConfigurationText() {
+  std::string text =
+      "# Configuration of Edge SLAM: every key with its meaning, its range and its default. Leave out what you do not "
+      "change.\n"
+      "# `edgeslam check-config FILE` says what is wrong with a file, or what it changes. Lengths of the scene are in "
+      "map units,\n"
+      "# a sigma is a standard deviation.\n\n"
+      "# Another configuration, relative to this file, to begin with; what this file says counts.\n"
+      "# include: profiles/low-power.yaml\n\n";
+  text += cameraSectionDocumentation() + captureSectionDocumentation() + serviceSectionsDocumentation();
+  appendSettings(text, Settings{}, true);
+  return text;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,58 @@
+// The configuration file: all settings of the method, and the camera with its place on the robot (design, section 6).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/frame_capture/camera_options.h"
+#include "drivers/lcm/lcm_options.h"
+#include "drivers/viewer/viewer_options.h"
+#include "edgeslam/input_error.h"
+#include "geometry/camera.h"
+#include "geometry/pose.h"
+#include "pipeline/settings.h"
+#include "scale/scale_options.h"
+
+namespace edgeslam {
+
+// How `edgeslam run` publishes, and what it keeps on the disk.
+struct ServiceOptions {
+  LcmOptions lcm;
+  double map_interval_s = 5;      // SLAM_MAP at most so often where the map changed; 0: on request only
+  std::string map_file;           // written at the end, on SIGHUP and on command; empty: nowhere
+  bool goes_on_with_map = false;  // at the start, with the map in the file, where there is one
+  std::string recordings_folder;  // for a folder a recording; empty: no command begins one
+  bool records_from_start = false;
+  ScaleOptions scale;
+  ViewerOptions viewer;
+};
+
+struct Configuration {
+  Settings settings;
+  std::optional<Camera> camera;  // where the file gives one
+  Pose body_T_camera;            // of the camera on the robot, translation [m]; the identity unless the file gives it
+  CameraOptions capture;         // the live camera
+  ServiceOptions service;
+  std::string source;  // path of the file; empty for the defaults
+};
+
+// An empty file gives the defaults; an included file is read first. Throws InputError `FILE:LINE: KEY: ...` at the
+// first problem.
+Configuration readConfiguration(const std::string& path);
+
+// Likewise, but collects all problems, one line each in the order of the file, and throws nothing: where there are any,
+// the configuration is not to be used.
+Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems);
+
+// True where the file is a camera's calibration rather than a configuration; false also where it cannot be read.
+bool isCalibrationFile(const std::string& path);
+
+// The effective configuration as YAML: reads back as the same one, but for the section `viewer:`, whose token is nobody
+// else's business.
+std::string formatConfiguration(const Configuration& configuration);
+
+// Every key with documentation, unit, range and default: the text of firmware_cfg/edgeslam.yaml.
+std::string defaultConfigurationText();
+
+}  // namespace edgeslam

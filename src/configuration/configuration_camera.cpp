@@ -1,0 +1,218 @@
+#include "configuration/configuration_camera.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "configuration/configuration_keys.h"
+#include "frames/calibration_file.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr double rotation_tolerance = 1e-3;  // of a matrix's or a quaternion's departure from a rotation
+constexpr double rounding = 1e-12;           // a quaternion so near to length 1 is kept to the last bit
+
+const char* modelName(CameraModel model) {
+  return model == CameraModel::kannala_brandt ? "kannala_brandt" : "pinhole_radial_tangential";
+}
+
+// The keys of an inline calibration, pointing into `camera`; those of the distortion depend on its model and are
+// optional.
+std::vector<ConfigurationKey> calibrationKeys(Camera& camera) {
+  std::array<double, 5>& k = camera.distortion;
+  std::vector<ConfigurationKey> keys{
+      {"camera.width", &camera.width, "px", 1, largest_camera_side, "image width"},
+      {"camera.height", &camera.height, "px", 1, largest_camera_side, "image height"},
+      {"camera.fx", &camera.fx, "px", least_focal_length_px, largest_focal_length_px, "focal length along x"},
+      {"camera.fy", &camera.fy, "px", least_focal_length_px, largest_focal_length_px, "focal length along y"},
+      {"camera.cx", &camera.cx, "px", 0, largest_camera_side, "principal point"},
+      {"camera.cy", &camera.cy, "px", 0, largest_camera_side, "principal point"},
+  };
+  const bool fisheye = camera.model == CameraModel::kannala_brandt;
+  const std::array<const char*, 5> fisheye_names{"k1", "k2", "k3", "k4", ""};
+  const std::array<const char*, 5> radial_tangential_names{"k1", "k2", "p1", "p2", "k3"};
+  for (std::size_t i = 0; i < (fisheye ? 4U : 5U); ++i) {
+    const std::string name = fisheye ? fisheye_names[i] : radial_tangential_names[i];
+    keys.push_back({"camera." + name, &k[i], "", -largest_distortion, largest_distortion, "distortion"});
+  }
+  return keys;
+}
+
+void readInlineCalibration(const YAML::Node& section, Configuration& configuration, const TellProblem& tell) {
+  Camera camera;
+  bool good = true;
+  const auto reject = [&](const YAML::Node& at, const std::string& problem) {
+    tell(at.Mark().line, problem);
+    good = false;
+  };
+  if (const YAML::Node model = section["model"]) {
+    const std::string name = model.IsScalar() ? model.Scalar() : "";
+    if (name == modelName(CameraModel::kannala_brandt)) {
+      camera.model = CameraModel::kannala_brandt;
+    } else if (name != modelName(CameraModel::pinhole_radial_tangential)) {
+      reject(model, "camera.model: expected pinhole_radial_tangential or kannala_brandt");
+    }
+  }
+  const std::vector<ConfigurationKey> keys = calibrationKeys(camera);
+  for (const ConfigurationKey& key : keys) {
+    const std::string name = key.path.substr(key.path.find('.') + 1);
+    const YAML::Node value = section[name];
+    const bool needed = key.documentation != "distortion";
+    if (!value) {
+      if (needed) reject(section, key.path + " is missing (" + key.documentation + ", " + expectedValue(key) + ")");
+      continue;
+    }
+    const std::string wrong = value.IsScalar() ? setValue(key, value.Scalar()) : "not a number";
+    if (!wrong.empty()) reject(value, key.path + ": " + wrong + "; expected " + expectedValue(key));
+  }
+  for (const char* name : {"p1", "p2", "k4"}) {
+    const bool has = std::any_of(keys.begin(), keys.end(),
+                                 [&](const auto& key) { return key.path == std::string("camera.") + name; });
+    if (section[name] && !has)
+      reject(section[name], std::string("camera.") + name + " is no coefficient of this camera model");
+  }
+  if (!good) return;
+  if (camera.cx < 0 || camera.cx > camera.width - 1 || camera.cy < 0 || camera.cy > camera.height - 1) {
+    return tell(section["cx"].Mark().line, "camera.cx, camera.cy: the principal point lies outside the image");
+  }
+  configuration.camera = camera;
+}
+
+void readCalibrationFile(const YAML::Node& section, const YAML::Node& calibration, Configuration& configuration,
+                         const TellProblem& tell) {
+  if (!calibration.IsScalar() || calibration.Scalar().empty()) {
+    return tell(calibration.Mark().line, "camera.calibration: the path of a file is expected");
+  }
+  for (const auto& entry : section) {
+    const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    if (name != "calibration" && name != "body_T_camera") {
+      tell(entry.first.Mark().line, "camera." + name + ": the calibration is in a file already (camera.calibration)");
+    }
+  }
+  const std::filesystem::path folder = std::filesystem::path(configuration.source).parent_path();
+  try {
+    configuration.camera = readCalibration((folder / calibration.Scalar()).string());
+  } catch (const InputError& error) {
+    tell(calibration.Mark().line, std::string("camera.calibration: ") + error.what());
+  }
+}
+
+// The numbers of a list, nested lists flattened by one level; false where anything else is in it.
+bool readNumbers(const YAML::Node& node, std::vector<double>& numbers) {
+  if (!node.IsSequence() || node.size() > 16) return false;
+  for (const YAML::Node& entry : node) {
+    if (entry.IsSequence() && entry.size() == 4) {
+      for (const YAML::Node& inner : entry) {
+        numbers.push_back(0);
+        if (!inner.IsScalar() || !parseNumber(inner.Scalar(), numbers.back())) return false;
+      }
+    } else {
+      numbers.push_back(0);
+      if (!entry.IsScalar() || !parseNumber(entry.Scalar(), numbers.back())) return false;
+    }
+  }
+  return true;
+}
+
+std::string poseFromMatrix(const YAML::Node& node, Pose& pose) {
+  std::vector<double> n;
+  if (!readNumbers(node, n) || n.size() != 16) return "16 finite numbers are expected";
+  Eigen::Matrix3d rotation;
+  rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
+  const Eigen::Matrix3d rest = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
+  if (!(rest.cwiseAbs().maxCoeff() < rotation_tolerance) || rotation.determinant() < 0) {
+    return "its upper left 3x3 part is not a rotation";
+  }
+  if (n[12] != 0 || n[13] != 0 || n[14] != 0 || n[15] != 1) return "its last row is not 0 0 0 1";
+  pose = {Eigen::Quaterniond(rotation).normalized(), {n[3], n[7], n[11]}};
+  return "";
+}
+
+std::string poseFromMapping(const YAML::Node& node, Pose& pose) {
+  std::vector<double> t, q;
+  for (const auto& entry : node) {
+    const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    if (name == "translation") {
+      if (!t.empty() || !readNumbers(entry.second, t) || t.size() != 3)
+        return "translation must be three finite numbers [m]";
+    } else if (name == "quaternion") {
+      if (!q.empty() || !readNumbers(entry.second, q) || q.size() != 4)
+        return "quaternion must be four finite numbers w x y z";
+    } else {
+      return "only translation and quaternion are expected here";
+    }
+  }
+  if (t.empty() || q.empty()) return "both translation and quaternion are needed";
+  const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
+  if (!(std::abs(rotation.norm() - 1) < rotation_tolerance)) return "the quaternion's length is not 1";
+  const bool is_unit = std::abs(rotation.norm() - 1) < rounding;
+  pose = {is_unit ? rotation : rotation.normalized(), {t[0], t[1], t[2]}};
+  return "";
+}
+
+}  // namespace
+
+bool isCalibration(const YAML::Node& document) {
+  const auto has = [&](const char* key) { return static_cast<bool>(document[key]); };
+  return document.IsMap() &&
+         (has("fx") || has("image_width") || has("camera_matrix") || has("cam0") || has("intrinsics"));
+}
+
+std::vector<std::string> cameraKeys() {
+  std::vector<std::string> names{"camera.calibration", "camera.body_T_camera", "camera.model"};
+  Camera camera;
+  for (const ConfigurationKey& key : calibrationKeys(camera)) names.push_back(key.path);
+  names.emplace_back("camera.k4");
+  return names;
+}
+
+void readCameraSection(const YAML::Node& section, Configuration& configuration, const TellProblem& tell) {
+  const YAML::Node calibration = section["calibration"], pose = section["body_T_camera"];
+  if (calibration) {
+    readCalibrationFile(section, calibration, configuration, tell);
+  } else if (section.size() > (pose ? 1U : 0U)) {
+    readInlineCalibration(section, configuration, tell);
+  }
+  if (pose) {
+    std::string wrong = "a 4x4 matrix or a mapping of translation and quaternion is expected";
+    if (pose.IsSequence()) wrong = poseFromMatrix(pose, configuration.body_T_camera);
+    if (pose.IsMap()) wrong = poseFromMapping(pose, configuration.body_T_camera);
+    if (!wrong.empty()) tell(pose.Mark().line, "camera.body_T_camera: " + wrong);
+  }
+}
+
+std::string formatCameraSection(const Configuration& configuration) {
+  const Pose& pose = configuration.body_T_camera;
+  const Eigen::Vector3d& t = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  std::string text = "camera:\n";
+  if (configuration.camera) {
+    Camera camera = *configuration.camera;
+    text += std::string("  model: ") + modelName(camera.model) + "\n";
+    for (const ConfigurationKey& key : calibrationKeys(camera)) {
+      text += "  " + key.path.substr(key.path.find('.') + 1) + ": " + valueText(key.field) + "\n";
+    }
+  }
+  text += "  body_T_camera: {translation: [" + numberText(t.x()) + ", " + numberText(t.y()) + ", " + numberText(t.z()) +
+          "], quaternion: [" + numberText(q.w()) + ", " + numberText(q.x()) + ", " + numberText(q.y()) + ", " +
+          numberText(q.z()) + "]}\n";
+  return text;
+}
+
+std::string cameraSectionDocumentation() {
+  return "# The camera. Without a calibration here the one beside the recording is used (camera.yaml, EuRoC's "
+         "sensor.yaml).\n"
+         "camera:\n"
+         "  # file with the calibration, relative to this file; or its keys in its place:\n"
+         "  # model (pinhole_radial_tangential or kannala_brandt), width, height, fx, fy, cx, cy [px], k1, k2, ...\n"
+         "  # calibration: cameras/tum_fr1.yaml\n"
+         "  # pose of the camera (x right, y down, z forward) on the robot, 4x4 matrix row by row or translation [m] "
+         "and\n"
+         "  # unit quaternion (w, x, y, z) (default: the identity)\n"
+         "  # body_T_camera: {translation: [0, 0, 0], quaternion: [1, 0, 0, 0]}\n";
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,34 @@
+// The configuration's `camera:` section: a calibration, inline or in a file of its own, and the camera's place on the
+// robot.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "configuration/configuration.h"
+
+namespace edgeslam {
+
+// Receives a problem and the line (from 0) at which it is.
+using TellProblem = std::function<void(int line, const std::string& problem)>;
+
+// True for a document that is a camera's calibration by itself, of any of the kinds that readCalibration knows.
+bool isCalibration(const YAML::Node& document);
+
+// Names of the keys that the section may hold, each with "camera." before it.
+std::vector<std::string> cameraKeys();
+
+// Fills camera and body_T_camera from the section's mapping; a calibration's path is relative to the configuration
+// file. Unknown and repeated keys are the caller's business.
+void readCameraSection(const YAML::Node& section, Configuration& configuration, const TellProblem& tell);
+
+// The section as YAML; empty where there is neither a camera nor a pose.
+std::string formatCameraSection(const Configuration& configuration);
+
+// The section's documentation with an example, all commented out.
+std::string cameraSectionDocumentation();
+
+}  // namespace edgeslam

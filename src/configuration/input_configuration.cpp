@@ -1,0 +1,21 @@
+#include "configuration/input_configuration.h"
+
+#include "recording/recording_source.h"
+
+namespace edgeslam {
+
+Configuration configurationFor(const FrameSource& source, const std::string& file) {
+  if (!file.empty()) return readConfiguration(file);
+  if (const Recording* recording = source.recording()) return readConfiguration(recording->configuration_path);
+  return Configuration();
+}
+
+Camera cameraFor(const FrameSource& source, const Configuration& configuration, const std::string& input) {
+  if (configuration.camera) return *configuration.camera;
+  if (source.camera()) return *source.camera();
+  throw InputError(
+      input +
+      ": no calibration: put a camera.yaml beside the frames, or give one in the configuration (camera.calibration)");
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,19 @@
+// The configuration and the calibration that frames bring with them, where the user gives no others.
+#pragma once
+
+#include <string>
+
+#include "configuration/configuration.h"
+#include "frames/frame_source.h"
+
+namespace edgeslam {
+
+// Of the file; where `file` is empty, the one that a recording was made with, and the defaults for other frames. Throws
+// InputError as readConfiguration() does.
+Configuration configurationFor(const FrameSource& source, const std::string& file);
+
+// The configuration's calibration, or else the one beside the frames. Throws InputError, which names `input`, where
+// there is none.
+Camera cameraFor(const FrameSource& source, const Configuration& configuration, const std::string& input);
+
+}  // namespace edgeslam

@@ -1,0 +1,73 @@
+#include "map/saved_map.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "edgeslam/input_error.h"
+#include "files/atomic_file.h"
+#include "map/map_check.h"
+
+namespace edgeslam {
+namespace {
+
+std::string readWhole(const std::string& path) {
+  constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 33;
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw InputError(path + ": no such file");
+  if (!std::filesystem::is_regular_file(status)) throw InputError(path + ": expected a saved map, this is no file");
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || size > largest_file) throw InputError(path + ": too large for a map");
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes;
+  const auto readTo = [&](std::uintmax_t end) {
+    const std::size_t begin = bytes.size();
+    bytes.resize(static_cast<std::size_t>(end));
+    if (!file || !file.read(&bytes[begin], static_cast<std::streamsize>(end - begin)))
+      throw InputError(path + ": cannot be read");
+  };
+  // A film given by mistake is not read to its end.
+  readTo(std::min<std::uintmax_t>(size, 16));
+  if (bytes == encodeMap(SavedMap()).substr(0, bytes.size())) readTo(size);
+  return bytes;
+}
+
+}  // namespace
+
+void saveMap(const std::string& path, const Camera& camera, const Map& map) {
+  const std::string problem = mapProblem(camera, map);
+  if (!problem.empty()) throw std::logic_error("the map would not be read back: " + problem);
+  writeFileAtomically(path, encodeMap({camera, map}));
+}
+
+void requireMapCanBeSaved(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InputError(path + ": expected a file to save the map to, this is no file");
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(path, error).parent_path();
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw InputError(path + ": the map cannot be saved there: " + folder.string() + " is no folder");
+  }
+  // Permissions alone don't tell: there are folders in which not even root can make a file.
+  try {
+    const PendingFile trial(path, "");
+  } catch (const InputError& problem) {
+    const std::string reason = std::string(problem.what()).substr(path.size() + std::string(": ").size());
+    throw InputError(path + ": the map cannot be saved there: " + reason);
+  }
+}
+
+Map loadMap(const std::string& path, const Camera& camera) {
+  SavedMap saved = decodeMap(readWhole(path), path);
+  if (saved.map.keyframes.empty()) throw InputError(path + ": the map has no keyframe");
+  if (!(saved.camera == camera)) {
+    throw InputError(path + ": the map was made with another calibration than that of these frames");
+  }
+  return std::move(saved.map);
+}
+
+}  // namespace edgeslam

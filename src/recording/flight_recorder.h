@@ -1,0 +1,44 @@
+// The flight recorder of a live run: hands the run's frames and decisions to the thread that writes them.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "pipeline/decision_sink.h"
+#include "pipeline/settings.h"
+#include "recording/recording_thread.h"
+
+namespace edgeslam {
+
+RecordingLimits recordingLimits(const RecordingSpace& space);
+
+class FlightRecorder : public DecisionSink {
+ public:
+  // Throws InputError where the recording cannot be begun.
+  FlightRecorder(const std::string& folder, const RecordingDescription& description, const RecordingLimits& limits = {})
+      : folder_(folder), thread_(folder, description, limits) {}
+
+  void mappingBusy(std::int64_t frame_index) noexcept override;
+  void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept override;
+  void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override;
+  void passedOver(std::int64_t index, std::int64_t time_ns) noexcept override;
+  void processed(const std::shared_ptr<const FrameImages>& images) noexcept override;
+  void unreadable(std::int64_t index, std::int64_t time_ns, const std::string& problem) noexcept override;
+
+  // Ends the recording, from any one thread, also while the run goes on: what it decides later is not recorded. Takes
+  // up to 1 s, or as long as the disk needs for a write.
+  RecordingStatus stop();
+
+  RecordingStatus status() const { return thread_.status(); }
+  const std::string& folder() const { return folder_; }
+
+ private:
+  void post(RecordingEntry entry) noexcept;
+  void postNumbered(DecisionKind kind, std::int64_t index, std::int64_t number) noexcept;
+
+  const std::string folder_;
+  std::atomic<bool> ended_{false}, posting_{false};
+  RecordingThread thread_;
+};
+
+}  // namespace edgeslam

@@ -1,0 +1,86 @@
+// The flight recorder's thread: takes what the run hands over and writes it, without ever making the run wait.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "map/keyframe.h"
+#include "recording/recording_writer.h"
+
+namespace edgeslam {
+
+// A frame or a decision on its way to the recorder. Copying it neither allocates nor copies pixels.
+struct RecordingEntry {
+  DecisionKind kind = DecisionKind::frame;    // any but `gap`, `stopped` and `end`, which the thread writes itself
+  std::shared_ptr<const FrameImages> images;  // of a frame
+  std::int64_t index = 0;                     // as in Decision
+  std::int64_t time_ns = 0;
+  std::int64_t number = 0;
+  std::array<char, 160> reason{};  // of an unreadable frame: up to the first zero
+};
+
+// Cuts off what does not fit.
+RecordingEntry unreadableFrameEntry(std::int64_t index, std::int64_t time_ns, std::string_view reason);
+
+class RecordingThread {
+ public:
+  // Opens the recording (RecordingWriter::open, which may throw InputError) and starts the thread, at nice 10.
+  // `capacity`: entries that may wait, each frame among them holding its image; the default is 2 s of frames.
+  RecordingThread(const std::string& folder, const RecordingDescription& description,
+                  const RecordingLimits& limits = {}, std::size_t capacity = 64);
+  // stop()
+  ~RecordingThread();
+  RecordingThread(const RecordingThread&) = delete;
+  RecordingThread& operator=(const RecordingThread&) = delete;
+  RecordingThread(RecordingThread&&) = delete;
+  RecordingThread& operator=(RecordingThread&&) = delete;
+
+  // Hands an entry over. Wait-free: no lock, no system call, no allocation. False where the queue is full: the entry is
+  // lost, and the recording tells how many were lost at this place. True says nothing of the disk: see status(). Call
+  // it from one thread only.
+  bool post(RecordingEntry entry) noexcept;
+
+  // How it goes, entries lost in post() included. Takes a lock, which post() does not: for the thread that reports.
+  RecordingStatus status() const;
+
+  // Writes for up to 1 s what still waits, then the clean end, and joins the thread (a write that the disk holds up is
+  // waited for). What was left is a gap of the recording and told. Call it when post() is called no more; further calls
+  // only return the status.
+  RecordingStatus stop();
+
+ private:
+  struct QueuedEntry {
+    RecordingEntry entry;
+    std::int64_t lost_before = 0;  // entries lost between the one before and this one
+  };
+
+  void run();
+  void writeUntilStopped();
+  void write(const QueuedEntry& queued);
+  void writeEnd();
+  void writeLost(std::int64_t count);
+  void publishStatus();
+
+  boost::lockfree::spsc_queue<QueuedEntry> queue_;
+  std::int64_t lost_before_next_ = 0;  // the posting thread's
+  std::atomic<std::int64_t> lost_{0};  // in post(), ever
+  std::atomic<bool> stop_{false};
+
+  RecordingWriter writer_;         // from here on the recorder's thread alone
+  std::int64_t lost_written_ = 0;  // of those lost, what decisions.txt tells
+
+  mutable std::mutex status_mutex_;  // of the two below
+  RecordingStatus status_;
+  std::int64_t lost_in_status_ = 0;
+
+  std::thread thread_;
+};
+
+}  // namespace edgeslam

@@ -1,0 +1,102 @@
+#include "service/live_replay.h"
+
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "frames/frame_problem.h"
+#include "pipeline/live_run.h"
+#include "pipeline/run_record.h"
+#include "recording/flight_recorder.h"
+#include "service/run_publisher.h"
+
+namespace edgeslam {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// One line for all that was not allowed.
+void tell(const std::vector<std::string>& problems) {
+  if (problems.empty()) return;
+  std::cerr << "edgeslam: runs on without ";
+  for (const std::string& problem : problems) std::cerr << (&problem == &problems.front() ? "" : "; ") << problem;
+  std::cerr << " (threads: in the configuration)\n";
+}
+
+// Each frame at its time.
+void feed(FrameSource& source, const Camera& camera, double pace, LiveRun& run) {
+  std::optional<Clock::time_point> start;
+  std::int64_t first_ns = 0;
+  while (std::optional<Frame> frame = source.next()) {
+    if (!start) {
+      start = Clock::now();
+      first_ns = frame->time_ns;
+    }
+    FrameSlot& slot = run.nextSlot();
+    slot.index = frame->index;
+    slot.time_ns = frame->time_ns;
+    slot.problem = frameProblem(*frame, camera);
+    if (slot.problem.empty()) frame->grey.copyTo(slot.grey);
+    const auto since_start = static_cast<std::int64_t>(static_cast<double>(frame->time_ns - first_ns) / pace);
+    std::this_thread::sleep_until(*start + std::chrono::nanoseconds(since_start));
+    run.handOver();
+  }
+}
+
+}  // namespace
+
+LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Settings& settings,
+                            const LiveReplay& replay) {
+  std::shared_ptr<FlightRecorder> recorder;
+  if (!replay.record_folder.empty()) {
+    recorder =
+        std::make_shared<FlightRecorder>(replay.record_folder, replay.description, recordingLimits(settings.recording));
+  }
+  RunRecord record(camera);
+  LiveObserver observer;
+  observer.frame = [&](const FrameResult& result, const std::string& problem) {
+    record.add(result, !problem.empty());
+    if (replay.publisher) replay.publisher->frame(result, problem);
+    if (replay.progress) replay.progress(result, problem);
+  };
+  observer.report = [&](const MappingReport& report) {
+    record.add(report);
+    if (replay.publisher) replay.publisher->report(report);
+  };
+  if (replay.publisher) observer.tick = [&] { replay.publisher->tick(); };
+
+  LiveRun run(camera, settings, liveOptions(settings.threads), observer, recorder.get());
+  if (replay.map_in) {
+    record.goOnFrom(replay.map_in->keyframes.back().id + 1);
+    run.goOnWith(*replay.map_in);
+  }
+  if (replay.publisher) {
+    replay.publisher->begin(run, recorder, replay.map_in ? RunStart::saved_map : RunStart::new_map);
+  }
+  run.start();
+  std::vector<std::string> problems = run.problems();
+  const std::string refused = setUpThread({"capture", settings.threads.capture_priority, 0, false, {}});
+  if (!refused.empty()) problems.push_back(refused);
+  tell(problems);
+  feed(source, camera, replay.pace, run);
+  setUpThread({"edgeslam", 0, 0, false, {}});
+  run.stop(/*settle=*/true);
+  if (replay.publisher) replay.publisher->end(/*is_last=*/true);
+
+  LiveReplayResult result;
+  const LiveCounts counts = run.counts();
+  result.run = record.finish(run.mapper());
+  result.run.pace = replay.pace;
+  result.run.dropped_frames = counts.passed_over;
+  result.run.thread_durations = run.durations();
+  result.map = run.mapper().map();
+  if (recorder) {
+    const RecordingStatus status = recorder->stop();
+    result.recording = status.message;
+  }
+  return result;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,39 @@
+// Replay at the pace of the time stamps by the live schedule, as on the robot, and its recording.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "frames/frame_source.h"
+#include "map/map.h"
+#include "pipeline/frame_result.h"
+#include "pipeline/run_result.h"
+#include "pipeline/settings.h"
+#include "recording/recording_writer.h"
+
+namespace edgeslam {
+
+class RunPublisher;
+
+struct LiveReplay {
+  std::optional<Map> map_in;
+  double pace = 1;                    // frames come so many times as fast as their time stamps say
+  std::string record_folder;          // empty: not recorded
+  RecordingDescription description;   // of the recording
+  RunPublisher* publisher = nullptr;  // null: nothing is published
+  // Called for each frame, in order, by another thread.
+  std::function<void(const FrameResult&, const std::string& problem)> progress;
+};
+
+struct LiveReplayResult {
+  RunResult run;
+  Map map;
+  std::string recording;  // how recording went; empty where it was not asked for
+};
+
+// Throws InputError where the recording cannot be begun.
+LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Settings& settings,
+                            const LiveReplay& replay);
+
+}  // namespace edgeslam

@@ -1,0 +1,175 @@
+#include "simulator/simulator.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "edgeslam/input_error.h"
+#include "simulator/scene_lighting.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr std::int64_t kFirstTime_ns = 1'000'000'000'000;
+constexpr int kDefaultFrames = 300;
+constexpr double kCoveredLight = 0.012;  // share of the light that a hand on the lens lets through
+constexpr double kBlurStep_px = 1.2;     // an edge moves at most about so far between two poses of an exposure
+constexpr int kFewestPoses = 5;
+constexpr int kMostPoses = 41;
+
+void checkRange(const char* option, double value, double least, double most) {
+  if (value >= least && value <= most) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "simulate: %s is %g, expected %g to %g", option, value, least, most);
+  throw InputError(text);
+}
+
+void checkRanges(const char* option, const std::vector<FrameRange>& ranges, int frames) {
+  for (const FrameRange& range : ranges) {
+    if (range.first >= 0 && range.count > 0 && range.first < frames && range.count <= frames - range.first) continue;
+    throw InputError(std::string("simulate: ") + option + " " + std::to_string(range.first) + ":" +
+                     std::to_string(range.count) + " is not within the sequence's frames 0 to " +
+                     std::to_string(frames - 1));
+  }
+}
+
+void checkOptions(const SimulationOptions& options) {
+  checkRange("frames", options.frames, 0, 1'000'000);
+  checkRange("fps", options.fps, 1, 1000);
+  checkRange("width", options.width, 64, 4096);
+  checkRange("height", options.height, 64, 4096);
+  checkRange("noise", options.noise, 0, 60);
+  checkRange("exposure", options.exposure_ms, 0, 1000 / options.fps);
+  checkRange("speed", options.speed, 0.05, 10);
+}
+
+Camera makeCamera(const SimulationOptions& options) {
+  Camera camera;
+  camera.width = options.width;
+  camera.height = options.height;
+  // Lenses for 640 x 480, scaled so that the field of view covers the larger image side as there.
+  const double scale = std::max(options.width / 640.0, options.height / 480.0);
+  const double middle_x = 0.5 * (options.width - 1), middle_y = 0.5 * (options.height - 1);
+  camera.cx = middle_x + 1.3 * scale;
+  camera.cy = middle_y + 4.1 * scale;
+  if (options.fisheye) {
+    camera.model = CameraModel::kannala_brandt;
+    camera.fx = 330 * scale;
+    camera.fy = 330.4 * scale;
+    camera.distortion = {-0.012, 0.009, -0.006, 0.0012, 0};
+  } else if (isCorridor(options.scene)) {
+    camera.fx = 421 * scale;
+    camera.fy = 421.6 * scale;
+    camera.distortion = {-0.245, 0.055, 0.0004, -0.0006, 0};
+  } else {
+    camera.fx = 530 * scale;
+    camera.fy = 532 * scale;
+    camera.distortion = {0.045, -0.11, -0.0012, 0.0007, 0};
+  }
+  return camera;
+}
+
+double frameTime(const SimulationOptions& options, int index) { return index / options.fps; }
+
+std::vector<TimeSpan> timeSpans(const std::vector<FrameRange>& ranges, double fps) {
+  std::vector<TimeSpan> spans;
+  for (const FrameRange& range : ranges) {
+    // Half an interval more at each end: the whole exposure of every frame lies inside.
+    spans.push_back({(range.first - 0.5) / fps, (range.first + range.count - 0.5) / fps});
+  }
+  return spans;
+}
+
+bool isIn(const std::vector<FrameRange>& ranges, int index) {
+  return std::any_of(ranges.begin(), ranges.end(), [index](const FrameRange& range) { return range.contains(index); });
+}
+
+// Poses spread evenly over the exposure about `time_s`, the more the faster the image moves; the middle one is at
+// `time_s`.
+std::vector<Pose> exposurePoses(const SimulatedSequence& sequence, double time_s) {
+  const double exposure_s = 1e-3 * sequence.options.exposure_ms;
+  const Pose begin = poseAt(sequence.motion, time_s - 0.5 * exposure_s),
+             end = poseAt(sequence.motion, time_s + 0.5 * exposure_s);
+  // As if everything were 1 m away.
+  const double blur_px = meanFocalLength(sequence.camera) *
+                         (rotationAngle(begin.rotation, end.rotation) + (end.translation - begin.translation).norm());
+  const int half = static_cast<int>(std::ceil(0.5 * blur_px / kBlurStep_px));
+  const int count = std::clamp(2 * half + 1, kFewestPoses, kMostPoses);
+  std::vector<Pose> poses;
+  for (int i = 0; i < count; ++i) {
+    poses.push_back(poseAt(sequence.motion, time_s + exposure_s * ((i + 0.5) / count - 0.5)));
+  }
+  return poses;
+}
+
+}  // namespace
+
+FrameRange parseFrameRange(const std::string& text) {
+  FrameRange range;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, range.first);
+  if (first.ec == std::errc() && first.ptr != end && *first.ptr == ':') {
+    const auto count = std::from_chars(first.ptr + 1, end, range.count);
+    if (count.ec == std::errc() && count.ptr == end && range.first >= 0 && range.count > 0) return range;
+  }
+  throw InputError("simulate: '" + text + "' is no frame range: expected FIRST:COUNT, such as 120:20");
+}
+
+std::int64_t SimulatedSequence::time(int index) const {
+  return kFirstTime_ns + static_cast<std::int64_t>(std::llround(1e9 * frameTime(options, index)));
+}
+
+Pose SimulatedSequence::groundTruth(int index) const { return poseAt(motion, frameTime(options, index)); }
+
+SimulatedFrame SimulatedSequence::frame(int index) const {
+  if (index < 0 || index >= size()) throw std::out_of_range("SimulatedSequence::frame");
+  const double time_s = frameTime(options, index);
+  const cv::Mat radiance = renderRadiance(scene, rays, exposurePoses(*this, time_s));
+  const double light = isIn(options.covered, index) ? kCoveredLight : 1;
+  SensorOptions sensor;
+  sensor.noise = options.noise;
+  const std::uint64_t noise_seed = options.seed * 0x9E3779B97F4A7C15U + static_cast<std::uint64_t>(index) + 1;
+  const double gain = light * gains[static_cast<std::size_t>(index)];
+  return {time(index), senseImage(radiance, gain, sensor, noise_seed), groundTruth(index)};
+}
+
+SimulatedSequence makeSequence(const SimulationOptions& options) {
+  checkOptions(options);
+  SimulatedSequence sequence;
+  sequence.options = options;
+  int& frames = sequence.options.frames;
+  if (frames == 0) {
+    frames = kDefaultFrames;
+    if (isCorridor(options.scene)) {
+      const double lap_s = lapTime(makeCameraMotion(options.scene, options.speed, options.seed, 0));
+      frames = static_cast<int>(std::ceil((lap_s + 1.5 / options.speed) * options.fps));
+    }
+  }
+  checkRanges("cover", options.covered, frames);
+  checkRanges("shake", options.shaken, frames);
+  checkRanges("still", options.still, frames);
+  checkRanges("turn", options.turned, frames);
+
+  sequence.camera = makeCamera(options);
+  sequence.rays = makeRayTable(sequence.camera);
+  sequence.scene.scene = makeScene(options.scene, options.seed);
+  sequence.scene.light = computeLight(sequence.scene.scene);
+  sequence.motion = makeCameraMotion(options.scene, options.speed, options.seed, frameTime(options, frames));
+  sequence.motion.shaken = timeSpans(options.shaken, options.fps);
+  sequence.motion.still = timeSpans(options.still, options.fps);
+  sequence.motion.turned = timeSpans(options.turned, options.fps);
+  sequence.motion.still.insert(sequence.motion.still.end(), sequence.motion.turned.begin(),
+                               sequence.motion.turned.end());
+
+  std::vector<double> means;
+  for (int i = 0; i < frames; ++i) {
+    const double mean = meterRadiance(sequence.scene, sequence.rays, sequence.groundTruth(i));
+    means.push_back(isIn(options.covered, i) ? kCoveredLight * mean : mean);
+  }
+  sequence.gains = automaticGains(means, 1 / options.fps);
+  return sequence;
+}
+
+}  // namespace edgeslam

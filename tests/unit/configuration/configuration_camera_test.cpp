@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include "configuration/configuration.h"
+#include "unit/files/temporary_folder.h"
+
+namespace edgeslam {
+namespace {
+
+const std::string calibration =
+    "width: 640, height: 480, fx: 500, fy: 501, cx: 320, cy: 240, k1: 0.1, k2: -0.2, p1: 0.01, p2: 0.02, k3: 0.3";
+
+Configuration configurationOf(const std::string& text) {
+  const TemporaryFolder folder;
+  folder.write("cameras/known.yaml", "width: 640\nheight: 480\nfx: 500\nfy: 501\ncx: 320\ncy: 240\nk1: 0.1\n");
+  folder.write("cameras/bad.yaml", "width: 640\nheight: 480\nfx: -500\nfy: 501\ncx: 320\ncy: 240\n");
+  return readConfiguration(folder.write("file.yaml", text));
+}
+
+void expectRefused(const std::string& text, const std::string& part) {
+  try {
+    configurationOf(text);
+    ADD_FAILURE() << "not refused: " << text;
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+TEST(ConfigurationCamera, ReadsAnInlineCalibration) {
+  const Configuration read = configurationOf("camera: {" + calibration + "}\n");
+  ASSERT_TRUE(read.camera);
+  EXPECT_EQ(read.camera->model, CameraModel::pinhole_radial_tangential);
+  EXPECT_EQ(read.camera->width, 640);
+  EXPECT_EQ(read.camera->height, 480);
+  EXPECT_EQ(read.camera->fx, 500);
+  EXPECT_EQ(read.camera->fy, 501);
+  EXPECT_EQ(read.camera->cx, 320);
+  EXPECT_EQ(read.camera->cy, 240);
+  EXPECT_EQ(read.camera->distortion, (std::array<double, 5>{0.1, -0.2, 0.01, 0.02, 0.3}));
+}
+
+TEST(ConfigurationCamera, ReadsAFisheye) {
+  const Configuration read = configurationOf(
+      "camera: {model: kannala_brandt, width: 640, height: 480, fx: 300, fy: 300, cx: 320, cy: 240, k1: 1, k2: 2, k3: "
+      "3, k4: 4}\n");
+  ASSERT_TRUE(read.camera);
+  EXPECT_EQ(read.camera->model, CameraModel::kannala_brandt);
+  EXPECT_EQ(read.camera->distortion, (std::array<double, 5>{1, 2, 3, 4, 0}));
+}
+
+TEST(ConfigurationCamera, ReadsACalibrationFileRelativeToItself) {
+  const Configuration read = configurationOf("camera:\n  calibration: cameras/known.yaml\n");
+  ASSERT_TRUE(read.camera);
+  EXPECT_EQ(read.camera->fy, 501);
+}
+
+TEST(ConfigurationCamera, WrongCalibrationsAreRefused) {
+  expectRefused("camera: {width: 640}\n", "camera.height is missing");
+  expectRefused("camera: {" + calibration + ", k4: 1}\n", "camera.k4 is no coefficient");
+  expectRefused("camera: {" + calibration + ", model: fish}\n", "camera.model: expected");
+  expectRefused("camera: {" + calibration + ", colour: 1}\n", "file.yaml:1: camera.colour is not a key");
+  expectRefused("camera: {" + calibration + ", calibration: cameras/known.yaml}\n", "in a file already");
+  for (const char* value : {"-500", "0", ".nan", ".inf", "wide", "[500]", "~"}) {
+    expectRefused(std::string("camera: {width: 640, height: 480, fx: ") + value + ", fy: 500, cx: 320, cy: 240}\n",
+                  "file.yaml:1: camera.fx: ");
+  }
+  expectRefused("camera: {width: 640, height: 480, fx: 500, fy: 500, cx: 320, cy: 640}\n", "outside the image");
+  expectRefused("camera:\n  calibration: cameras/none.yaml\n", "file.yaml:2: camera.calibration: ");
+  expectRefused("camera:\n  calibration: cameras/bad.yaml\n", "fx");
+  expectRefused("camera:\n  calibration: [1]\n", "the path of a file is expected");
+}
+
+TEST(ConfigurationCamera, BothFormsOfThePoseMeanTheSame) {
+  const Configuration matrix =
+      configurationOf("camera:\n  body_T_camera: [[0, 0, 1, 0.1], [-1, 0, 0, 0.2], [0, -1, 0, 0.3], [0, 0, 0, 1]]\n");
+  const Configuration flat =
+      configurationOf("camera:\n  body_T_camera: [0, 0, 1, 0.1, -1, 0, 0, 0.2, 0, -1, 0, 0.3, 0, 0, 0, 1]\n");
+  const Configuration mapping =
+      configurationOf("camera:\n  body_T_camera: {translation: [0.1, 0.2, 0.3], quaternion: [0.5, -0.5, 0.5, -0.5]}\n");
+  for (const Configuration* read : {&matrix, &flat, &mapping}) {
+    EXPECT_FALSE(read->camera);
+    // The camera's z axis (forward) is the robot's x axis.
+    EXPECT_TRUE((read->body_T_camera * Eigen::Vector3d(0, 0, 1)).isApprox(Eigen::Vector3d(1.1, 0.2, 0.3), 1e-12));
+    EXPECT_TRUE((read->body_T_camera * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(0.1, -0.8, 0.3), 1e-12));
+  }
+}
+
+TEST(ConfigurationCamera, WrongPosesAreRefused) {
+  const std::string begin = "camera:\n  body_T_camera: ";
+  expectRefused(begin + "[1, 2, 3]\n", "16 finite numbers");
+  expectRefused(begin + "[1, 0, 0, .nan, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n", "16 finite numbers");
+  expectRefused(begin + "[2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n", "not a rotation");
+  expectRefused(begin + "[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]\n", "not a rotation");
+  expectRefused(begin + "[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2]\n", "last row");
+  expectRefused(begin + "{translation: [0, 0, 0]}\n", "both translation and quaternion");
+  expectRefused(begin + "{translation: [0, 0], quaternion: [1, 0, 0, 0]}\n", "three finite numbers");
+  expectRefused(begin + "{translation: [0, 0, 0], quaternion: [0, 0, 0, 0]}\n", "length is not 1");
+  expectRefused(begin + "{translation: [0, 0, 0], quaternion: [1, 0, 0, 0], unit: mm}\n",
+                "only translation and quaternion");
+  expectRefused(begin + "forward\n", "file.yaml:2: camera.body_T_camera: a 4x4 matrix");
+}
+
+TEST(ConfigurationCamera, APlaceOnTheRobotIsReadBackToTheLastBit) {
+  for (const char* quaternion : {"[0.1, 0.7, -0.3, 0.64]", "[0.31, -0.95, 0.01, 0.0362]", "[0.577, 0.577, 0.578, 0]"}) {
+    const Configuration first = configurationOf(
+        "camera: {body_T_camera: {translation: [0.1, 0, 1e-9], quaternion: " + std::string(quaternion) + "}}\n");
+    const Configuration again = configurationOf(formatConfiguration(first));
+    EXPECT_EQ(again.body_T_camera.rotation.coeffs(), first.body_T_camera.rotation.coeffs()) << quaternion;
+  }
+}
+
+}  // namespace
+}  // namespace edgeslam

@@ -1,0 +1,51 @@
+#include "recording/flight_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "recording/recording_source.h"
+#include "unit/recording/made_recording.h"
+
+namespace edgeslam {
+namespace {
+
+std::shared_ptr<const FrameImages> imagesOf(int i) {
+  auto images = std::make_shared<FrameImages>();
+  images->frame_index = i;
+  images->time_ns = madeTime(i);
+  images->pyramid.levels.push_back(madeFrame(i));
+  return images;
+}
+
+TEST(FlightRecorder, EndedWhileTheRunGoesOnItHasACleanEndAndNoGap) {
+  for (int run = 0; run < 5; ++run) {
+    const TemporaryFolder folder;
+    FlightRecorder recorder(folder.path("recording"), madeDescription());
+    std::atomic<bool> stopped{false};
+    std::atomic<int> frames{0};
+    std::thread tracking([&] {
+      for (int i = 0; !stopped; ++i) {
+        recorder.tookUpdate(i, i);
+        recorder.processed(imagesOf(i));
+        ++frames;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      }
+    });
+    while (frames < 10) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    const RecordingStatus status = recorder.stop();
+    const int at_end = frames;
+    while (frames < at_end + 5) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    stopped = true;
+    tracking.join();
+    EXPECT_FALSE(status.recording);
+    EXPECT_EQ(status.not_recorded, 0);
+    const Recording recording = readRecording(folder.path("recording"));
+    EXPECT_TRUE(recording.decisions.complete) << recording.decisions.note;
+    EXPECT_GE(recording.frames.size(), 10U);
+    EXPECT_EQ(recorder.stop().frames, status.frames) << "once more changes nothing";
+  }
+}
+
+}  // namespace
+}  // namespace edgeslam

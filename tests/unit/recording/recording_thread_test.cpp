@@ -1,0 +1,209 @@
+#include "recording/recording_thread.h"
+
+#include <sys/resource.h>
+
+#include <chrono>
+
+#include "unit/recording/made_recording.h"
+
+namespace edgeslam {
+namespace {
+
+std::shared_ptr<const FrameImages> imagesOf(const cv::Mat& grey) {
+  auto images = std::make_shared<FrameImages>();
+  images->pyramid.levels.push_back(grey);
+  return images;
+}
+
+RecordingEntry frameEntry(int i) {
+  RecordingEntry entry;
+  entry.index = i;
+  entry.time_ns = madeTime(i);
+  entry.images = imagesOf(madeFrame(i));
+  return entry;
+}
+
+RecordingEntry updateEntry(int i, int number) {
+  RecordingEntry entry;
+  entry.kind = DecisionKind::update;
+  entry.index = i;
+  entry.number = number;
+  return entry;
+}
+
+// Tries again until it is taken; counts what was lost before.
+int postUntilTaken(RecordingThread& thread, const RecordingEntry& entry) {
+  int lost = 0;
+  while (!thread.post(entry)) {
+    ++lost;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return lost;
+}
+
+TEST(RecordingThread, RecordsWhatIsPosted) {
+  const TemporaryFolder folder;
+  RecordingThread thread(folder.path("recording"), madeDescription(), noLimits(), 200);
+  for (int i = 0; i < 60; ++i) {
+    RecordingEntry entry = frameEntry(i);
+    if (i == 10) {
+      entry.kind = DecisionKind::dropped;
+      entry.images.reset();
+    }
+    if (i == 20) entry = unreadableFrameEntry(i, madeTime(i), "no signal");
+    if (i % 4 == 0) {
+      EXPECT_TRUE(thread.post(updateEntry(i, i)));
+    }
+    EXPECT_TRUE(thread.post(entry));
+    if (i % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  }
+  const RecordingStatus status = thread.stop();
+  EXPECT_FALSE(status.recording);
+  EXPECT_EQ(status.frames, 58);
+  EXPECT_EQ(status.not_recorded, 0);
+  const Recording recording = readRecording(folder.path("recording"));
+  EXPECT_TRUE(recording.decisions.complete) << recording.decisions.note;
+  EXPECT_EQ(recording.frames.size(), 59U);
+  EXPECT_EQ(recording.decisions.updates.size(), 15U);
+  ASSERT_EQ(recording.decisions.dropped.size(), 1U);
+  EXPECT_EQ(recording.frames[19].problem, "no signal");
+  expectFramesAsMade(recording, madeFrame);
+}
+
+TEST(RecordingThread, ALongReasonIsCutOff) {
+  const RecordingEntry entry = unreadableFrameEntry(1, 2, std::string(1000, 'x'));
+  EXPECT_EQ(std::string(entry.reason.data()), std::string(entry.reason.size() - 1, 'x'));
+}
+
+TEST(RecordingThread, WhatAFullQueueLosesIsCountedAtItsPlace) {
+  const TemporaryFolder folder;
+  std::int64_t lost = 0, taken = 0;
+  RecordingThread thread(folder.path("recording"), madeDescription(), noLimits(), 4);
+  // Faster than any disk; then a pause, and one more.
+  for (int i = 0; i < 2000; ++i) ++(thread.post(frameEntry(i)) ? taken : lost);
+  ASSERT_GT(lost, 0);
+  lost += postUntilTaken(thread, frameEntry(2000));
+  ++taken;
+  EXPECT_GE(thread.status().not_recorded, lost);
+  const RecordingStatus status = thread.stop();
+  EXPECT_EQ(status.not_recorded, lost);
+  EXPECT_EQ(status.frames, taken);
+  const Recording recording = readRecording(folder.path("recording"));
+  EXPECT_EQ(recording.decisions.not_recorded, lost);
+  EXPECT_FALSE(recording.decisions.complete);
+  EXPECT_EQ(static_cast<std::int64_t>(recording.frames.size()), taken);
+  EXPECT_EQ(recording.frames.back().index, 2000);
+  expectFramesAsMade(recording, madeFrame);
+
+  // Each gap stands where the indices jump, and is as wide.
+  std::ifstream lines(folder.path("recording/decisions.txt"));
+  std::string word;
+  std::int64_t expected = 0, value = 0, time = 0;
+  while (lines >> word && word != "end") {
+    lines >> value;
+    if (word == "gap") expected += value;
+    if (word == "frame") {
+      lines >> time;
+      EXPECT_TRUE(value == expected || value == 2000) << value << " " << expected;
+      expected = value + 1;
+    }
+    lines >> word;
+  }
+  EXPECT_EQ(word, "end");
+}
+
+TEST(RecordingThread, WhatIsLostLastIsToldToo) {
+  const TemporaryFolder folder;
+  RecordingThread thread(folder.path("recording"), madeDescription(), noLimits(), 1);
+  std::int64_t lost = 0;
+  int i = 0;
+  while (thread.post(frameEntry(i))) ++i;
+  for (int more = 0; more < 3; ++more) lost += thread.post(updateEntry(i, more)) ? 0 : 1;
+  ++lost;
+  EXPECT_EQ(thread.stop().not_recorded, lost);
+  EXPECT_EQ(readRecording(folder.path("recording")).decisions.not_recorded, lost);
+}
+
+TEST(RecordingThread, StopsInTimeAndTellsWhatWasLeft) {
+  const TemporaryFolder folder;
+  RecordingDescription description = madeDescription();
+  description.camera.width = 4000;
+  description.camera.height = 3000;
+  RecordingThread thread(folder.path("recording"), description, noLimits(), 300);
+  RecordingEntry entry = frameEntry(0);
+  entry.images = imagesOf(cv::Mat(description.camera.height, description.camera.width, CV_8UC1, cv::Scalar(7)));
+  for (int i = 0; i < 300; ++i) {
+    entry.index = i;
+    entry.time_ns = madeTime(i);
+    EXPECT_TRUE(thread.post(entry));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const RecordingStatus status = thread.stop();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+  EXPECT_GT(status.not_recorded, 0);
+  EXPECT_EQ(status.frames + status.not_recorded, 300);
+  EXPECT_NE(status.message.find("without " + std::to_string(status.not_recorded)), std::string::npos);
+  const Recording recording = readRecording(folder.path("recording"));
+  EXPECT_EQ(static_cast<std::int64_t>(recording.frames.size()), status.frames);
+  EXPECT_EQ(recording.decisions.not_recorded, status.not_recorded);
+  EXPECT_EQ(entry.images.use_count(), 1);
+}
+
+TEST(RecordingThread, AfterTheBudgetImagesAreLetGo) {
+  const TemporaryFolder folder;
+  RecordingThread thread(folder.path("recording"), madeDescription(), {60'000, 0});
+  std::vector<RecordingEntry> entries;
+  for (int i = 0; i < 100; ++i) {
+    entries.push_back(frameEntry(i));
+    postUntilTaken(thread, entries.back());
+  }
+  const RecordingStatus status = thread.stop();
+  EXPECT_FALSE(status.recording);
+  EXPECT_NE(status.message.find("budget"), std::string::npos) << status.message;
+  EXPECT_LT(status.frames, 100);
+  for (const RecordingEntry& entry : entries) EXPECT_EQ(entry.images.use_count(), 1);
+  EXPECT_EQ(static_cast<std::int64_t>(readRecording(folder.path("recording")).frames.size()), status.frames);
+}
+
+TEST(RecordingThread, SyncsEachSecondWithoutBeingAsked) {
+  const TemporaryFolder folder;
+  RecordingThread thread(folder.path("recording"), madeDescription(), noLimits());
+  thread.post(frameEntry(0));
+  const auto start = std::chrono::steady_clock::now();
+  std::size_t frames = 0;
+  while (frames == 0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(10)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    frames = readRecording(folder.path("recording")).frames.size();
+  }
+  EXPECT_EQ(frames, 1U);
+}
+
+// The nice levels of this process' threads named "recorder".
+std::vector<int> niceLevels() {
+  std::vector<int> levels;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    if (fileContent(task.path() / "comm") != "recorder\n") continue;
+    levels.push_back(getpriority(PRIO_PROCESS, static_cast<id_t>(std::stoi(task.path().filename()))));
+  }
+  return levels;
+}
+
+TEST(RecordingThread, OnlyTheThreadItselfIsNice) {
+  const TemporaryFolder folder;
+  const int before = getpriority(PRIO_PROCESS, 0);
+  RecordingThread thread(folder.path("recording"), madeDescription(), noLimits());
+  for (int i = 0; i < 1000 && niceLevels() != std::vector<int>{10}; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(niceLevels(), std::vector<int>{10});
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), before);
+}
+
+TEST(RecordingThread, AFolderThatIsTakenIsToldAtOnce) {
+  const TemporaryFolder folder;
+  folder.write("taken/file", "x");
+  expectInputError([&] { RecordingThread(folder.path("taken"), madeDescription()); }, folder.path("taken"));
+}
+
+}  // namespace
+}  // namespace edgeslam
