@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/frame_result.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 

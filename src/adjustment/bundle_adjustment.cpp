@@ -137,7 +137,8 @@ bool readBack(const BundleStructure& structure, const BundleState& state, Bundle
 
 }  // namespace
 
-BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const BundleOptions& options) {
+BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const BundleOptions& options,
+                          const std::atomic<bool>* interrupted) {
   BundleResult result;
   const auto finite_camera = [](const BundleCamera& c) { return finite(c.world_T_camera); };
   if (!indicesInRange(problem) || !std::all_of(problem.cameras.begin(), problem.cameras.end(), finite_camera)) {
@@ -148,7 +149,7 @@ BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const Bu
   result.initial_cost = robustCost(camera, problem, options.huber);
 
   BundleWorkspace workspace;
-  const int iterations = minimizeBundle(camera, problem, options, workspace);
+  const int iterations = minimizeBundle(camera, problem, options, interrupted, workspace);
   if (iterations >= 0) {
     const std::vector<BundleCamera> cameras_before = problem.cameras;
     const std::vector<BundlePoint> points_before = problem.points;

@@ -44,8 +44,7 @@ struct BundleProblem {
 
 struct BundleOptions {
   int iterations = 8;
-  double huber = 2.0;                              // whitened, of the norm of an observation's two residuals
-  const std::atomic<bool>* interrupted = nullptr;  // where it becomes true, the adjustment is given up: not usable
+  double huber = 2.0;  // whitened, of the norm of an observation's two residuals
 };
 
 struct BundleResult {
@@ -64,7 +63,8 @@ struct BundleResult {
 
 // Optimises the problem in place. The same input gives the same output to the last bit (one thread, no clock).
 // Observations that are behind their camera count as constants until the others bring them before it. Inverse depths
-// stay over 0.
-BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const BundleOptions& options);
+// stay over 0. Where `interrupted` is given and becomes true, the adjustment is given up: not usable.
+BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const BundleOptions& options,
+                          const std::atomic<bool>* interrupted = nullptr);
 
 }  // namespace edgeslam

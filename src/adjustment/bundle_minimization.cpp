@@ -69,7 +69,7 @@ double dampingFactor(double gain, double expected) {
 }  // namespace
 
 int minimizeBundle(const Camera& camera, const BundleProblem& problem, const BundleOptions& options,
-                   BundleWorkspace& workspace) {
+                   const std::atomic<bool>* interrupted, BundleWorkspace& workspace) {
   structureBundle(problem, kMostDenseCameras, workspace.structure);
   if (workspace.structure.points.empty()) return -1;
   workspace.solver.prepare(workspace.structure);
@@ -86,7 +86,7 @@ int minimizeBundle(const Camera& camera, const BundleProblem& problem, const Bun
   bool ever_solved = false;
   int iteration = 0;
   while (iteration < options.iterations) {
-    if (options.interrupted && options.interrupted->load(std::memory_order_relaxed)) return -1;
+    if (interrupted && interrupted->load(std::memory_order_relaxed)) return -1;
     ++iteration;
     const bool solved = computeStep(damping, workspace);
     ever_solved |= solved;

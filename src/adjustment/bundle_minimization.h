@@ -21,8 +21,8 @@ struct BundleWorkspace {
 
 // Minimises the problem's robust cost; the end is `workspace.state`, of the cameras and points of
 // `workspace.structure`. The number of iterations, or -1 where nothing is free or observed, no step could be computed,
-// or it was interrupted.
+// or it was interrupted (`interrupted` may be null).
 int minimizeBundle(const Camera& camera, const BundleProblem& problem, const BundleOptions& options,
-                   BundleWorkspace& workspace);
+                   const std::atomic<bool>* interrupted, BundleWorkspace& workspace);
 
 }  // namespace edgeslam

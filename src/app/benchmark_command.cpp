@@ -14,6 +14,7 @@
 #include "benchmark/benchmark_run.h"
 #include "benchmark/known_calibration.h"
 #include "configuration/configuration.h"
+#include "configuration/configuration_text.h"
 #include "files/atomic_file.h"
 #include "frames/frame_source.h"
 #include "recording/recording_layout.h"

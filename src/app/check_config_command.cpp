@@ -8,7 +8,7 @@
 #include "configuration/configuration.h"
 #include "configuration/configuration_capture.h"
 #include "configuration/configuration_keys.h"
-#include "configuration/configuration_service.h"
+#include "configuration/configuration_text.h"
 #include "frames/calibration_file.h"
 
 namespace edgeslam {
@@ -22,21 +22,21 @@ void listCamera(const Camera& camera) {
 }
 
 void listDifferences(const Configuration& configuration) {
-  Settings settings = configuration.settings;
-  Settings defaults;
-  const std::vector<ConfigurationKey> keys = configurationKeys(settings);
-  const std::vector<ConfigurationKey> default_keys = configurationKeys(defaults);
+  Configuration shown = configuration, usual;
+  const std::vector<ConfigurationKey> keys = configurationKeys(shown), usual_keys = configurationKeys(usual);
   std::string changes;
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const std::string value = valueText(keys[i].field), usual = valueText(default_keys[i].field);
-    if (value == usual) continue;
-    changes.append("  ").append(keys[i].path).append(": ").append(value);
-    changes.append(" (default ").append(usual).append(")\n");
+    const ConfigurationKey& key = keys[i];
+    if (!key.hasField() || key.section() == "capture" || key.path == "viewer.token") continue;
+    const std::string value = valueText(key.field), default_value = valueText(usual_keys[i].field);
+    if (value == default_value) continue;
+    changes.append("  ").append(key.path).append(": ").append(value);
+    changes.append(" (default ").append(default_value).append(")\n");
   }
+  changes += formatCaptureSection(configuration.capture);
   std::cout << configuration.source << ": a good configuration; "
             << (changes.empty() ? "all settings are the defaults" : "what differs from the defaults:") << "\n"
             << changes;
-  std::cout << formatCaptureSection(configuration.capture) << formatServiceSections(configuration);
   if (configuration.camera) {
     listCamera(*configuration.camera);
   } else {
@@ -64,18 +64,24 @@ int checkConfiguration(const std::string& path) {
 void addCheckConfigCommand(CLI::App& app, int& exit_code) {
   struct Options {
     std::string path;
-    bool print_default = false;
+    bool print_default = false, print_expert = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("check-config", "Check a configuration or calibration file and say what it changes");
   CLI::Option* file = command->add_option("FILE", options->path, "Configuration or camera calibration (YAML)");
   CLI::Option* print = command->add_flag("--print-default", options->print_default,
-                                         "Print the default configuration, with documentation");
+                                         "Print what a user has reason to change, with its defaults");
+  CLI::Option* print_expert =
+      command->add_flag("--print-expert", options->print_expert, "Print the other keys, those of the method");
   file->excludes(print);
+  file->excludes(print_expert);
+  print->excludes(print_expert);
   command->callback([options, &exit_code] {
     if (options->print_default) {
-      std::cout << defaultConfigurationText();
+      std::cout << usersConfigurationText();
+    } else if (options->print_expert) {
+      std::cout << expertConfigurationText();
     } else if (options->path.empty()) {
       throw CLI::RequiredError("FILE");
     } else {

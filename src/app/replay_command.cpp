@@ -15,6 +15,7 @@
 #include "app/replay_outcome.h"
 #include "app/replay_progress.h"
 #include "configuration/configuration.h"
+#include "configuration/configuration_text.h"
 #include "configuration/input_configuration.h"
 #include "frames/frame_problem.h"
 #include "map/saved_map.h"

@@ -6,15 +6,13 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
-#include <set>
 
 #include "configuration/configuration_camera.h"
 #include "configuration/configuration_capture.h"
+#include "configuration/configuration_checks.h"
 #include "configuration/configuration_document.h"
 #include "configuration/configuration_keys.h"
-#include "configuration/configuration_service.h"
 #include "files/key_suggestion.h"
 
 namespace edgeslam {
@@ -41,17 +39,7 @@ std::string readText(const std::string& path) {
 class Reader {
  public:
   Reader(Configuration& configuration, std::vector<ConfigurationProblem>& problems)
-      : configuration_(configuration), problems_(problems), keys_(configurationKeys(configuration.settings)) {
-    for (const ConfigurationKey& key : keys_) {
-      sections_.insert(key.path.substr(0, key.path.find('.')));
-      if (!key.isHeading()) names_.push_back(key.path);
-    }
-    for (const std::string& name : cameraKeys()) names_.push_back(name);
-    for (const std::string& name : captureKeys()) names_.push_back(name);
-    for (const std::string& name : serviceKeys()) names_.push_back(name);
-    sections_.insert({"camera", "capture"});
-    sections_.insert(serviceSections().begin(), serviceSections().end());
-  }
+      : configuration_(configuration), problems_(problems), keys_(configurationKeys(configuration)) {}
 
   void readDocument(const YAML::Node& document) {
     if (document.IsNull()) return;
@@ -61,7 +49,7 @@ class Reader {
     }
     forEachKey(document, "", [this](const std::string& name, const YAML::Node& key, const YAML::Node& value) {
       if (name == include_key) return;  // read before
-      if (sections_.count(name) == 0) return tellUnknown(key.Mark().line, name);
+      if (!find(name)) return tellUnknown(key.Mark().line, name);
       readSection(name, key.Mark().line, value);
     });
   }
@@ -69,9 +57,18 @@ class Reader {
  private:
   void tell(int line, const std::string& problem) { problems_.push_back({line, problem}); }
 
+  // A key, or a section's heading.
+  const ConfigurationKey* find(const std::string& path) const {
+    const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const auto& known) { return known.path == path; });
+    return key == keys_.end() ? nullptr : &*key;
+  }
+
   void tellUnknown(int line, const std::string& name) {
-    std::vector<std::string> candidates = names_;
-    if (name.find('.') == std::string::npos) candidates.insert(candidates.end(), sections_.begin(), sections_.end());
+    const bool is_section = name.find('.') == std::string::npos;
+    std::vector<std::string> candidates;
+    for (const ConfigurationKey& key : keys_) {
+      if (is_section || !key.isHeading()) candidates.push_back(key.path);
+    }
     const std::string meant = closestKey(name, candidates);
     tell(line, name + " is not a key" + (meant.empty() ? "" : "; did you mean " + meant + "?"));
   }
@@ -101,42 +98,31 @@ class Reader {
     forEachKey(node, section + ".", [this](const std::string& name, const YAML::Node& key, const YAML::Node& value) {
       readKey(name, key.Mark().line, value);
     });
-    if (section == "camera") {
-      readCameraSection(node, configuration_, [this](int at, const std::string& problem) { tell(at, problem); });
-    }
-    if (section == "capture") {
-      readCaptureSection(node, configuration_.capture,
-                         [this](int at, const std::string& problem) { tell(at, problem); });
-    }
-    const std::vector<std::string>& sections = serviceSections();
-    if (std::find(sections.begin(), sections.end(), section) != sections.end()) readServiceSection(section, node);
+    const TellProblem tell_at = [this](int at, const std::string& problem) { tell(at, problem); };
+    if (section == "camera") readCameraSection(node, configuration_, tell_at);
+    if (section == "capture") readCaptureSection(node, configuration_.capture, tell_at);
+    const std::string wrong = sectionProblem(section, configuration_);
+    if (!wrong.empty()) tell(node.Mark().line, wrong);
   }
 
-  void readServiceSection(const std::string& section, const YAML::Node& node) {
-    edgeslam::readServiceSection(section, node, configuration_,
-                                 [this](int at, const std::string& problem) { tell(at, problem); });
-  }
-
-  void readKey(const std::string& name, int line, const YAML::Node& value) {
-    if (std::find(names_.begin(), names_.end(), name) == names_.end()) return tellUnknown(line, name);
-    const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const auto& k) { return k.path == name; });
-    if (key == keys_.end()) return;  // of a section with a reader of its own
+  void readKey(const std::string& path, int line, const YAML::Node& value) {
+    const ConfigurationKey* key = find(path);
+    if (!key) return tellUnknown(line, path);
+    if (!key->hasField()) return;  // its section's reader takes it
     std::string wrong;
     if (!value.IsScalar()) {
       wrong = value.IsNull() ? "has no value" : "a list or mapping";
-    } else if (value.Tag() != "?") {  // quoted, or marked as of another type
+    } else if (value.Tag() != "?" && !std::holds_alternative<std::string*>(key->field)) {  // quoted
       wrong = "\"" + value.Scalar() + "\" is a text";
     } else {
       wrong = setValue(*key, value.Scalar());
     }
-    if (!wrong.empty()) tell(line, name + ": " + wrong + "; expected " + expectedValue(*key));
+    if (!wrong.empty()) tell(line, path + ": " + wrong + "; expected " + expectedValue(*key));
   }
 
   Configuration& configuration_;
   std::vector<ConfigurationProblem>& problems_;
   std::vector<ConfigurationKey> keys_;
-  std::vector<std::string> names_;  // of all keys, with their section
-  std::set<std::string> sections_;
 };
 
 std::string formatted(const ConfigurationProblem& problem, const std::string& path) {
@@ -196,23 +182,6 @@ void readFile(const std::string& path, bool may_include, Configuration& configur
   for (const ConfigurationProblem& problem : found) problems.push_back(formatted(problem, path));
 }
 
-void appendSettings(std::string& text, Settings settings, bool documented) {
-  std::string section;
-  for (const ConfigurationKey& key : configurationKeys(settings)) {
-    if (key.isHeading()) {
-      if (documented) text += "\n# " + key.documentation + ".";
-      continue;
-    }
-    const std::size_t dot = key.path.find('.');
-    if (key.path.substr(0, dot) != section) {
-      section = key.path.substr(0, dot);
-      text += (documented ? "\n" : "") + section + ":\n";
-    }
-    if (documented) text += "  # " + key.documentation + " (" + expectedValue(key) + ")\n";
-    text += "  " + key.path.substr(dot + 1) + ": " + valueText(key.field) + "\n";
-  }
-}
-
 }  // namespace
 
 Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems) {
@@ -238,27 +207,6 @@ bool isCalibrationFile(const std::string& path) {
   } catch (const InputError&) {
     return false;
   }
-}
-
-std::string formatConfiguration(const Configuration& configuration) {
-  std::string text = formatCameraSection(configuration) + formatCaptureSection(configuration.capture) +
-                     formatServiceSections(configuration);
-  appendSettings(text, configuration.settings, false);
-  return text;
-}
-
-std::string defaultConfigurationText() {
-  std::string text =
-      "# Configuration of Edge SLAM: every key with its meaning, its range and its default. Leave out what you do not "
-      "change.\n"
-      "# `edgeslam check-config FILE` says what is wrong with a file, or what it changes. Lengths of the scene are in "
-      "map units,\n"
-      "# a sigma is a standard deviation.\n\n"
-      "# Another configuration, relative to this file, to begin with; what this file says counts.\n"
-      "# include: profiles/low-power.yaml\n\n";
-  text += cameraSectionDocumentation() + captureSectionDocumentation() + serviceSectionsDocumentation();
-  appendSettings(text, Settings{}, true);
-  return text;
 }
 
 }  // namespace edgeslam

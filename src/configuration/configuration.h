@@ -48,11 +48,4 @@ Configuration readConfiguration(const std::string& path, std::vector<std::string
 // True where the file is a camera's calibration rather than a configuration; false also where it cannot be read.
 bool isCalibrationFile(const std::string& path);
 
-// The effective configuration as YAML: reads back as the same one, but for the section `viewer:`, whose token is nobody
-// else's business.
-std::string formatConfiguration(const Configuration& configuration);
-
-// Every key with documentation, unit, range and default: the text of firmware_cfg/edgeslam.yaml.
-std::string defaultConfigurationText();
-
 }  // namespace edgeslam

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "configuration/configuration_keys.h"
 #include "frames/calibration_file.h"
 
 namespace edgeslam {
@@ -19,24 +18,28 @@ const char* modelName(CameraModel model) {
   return model == CameraModel::kannala_brandt ? "kannala_brandt" : "pinhole_radial_tangential";
 }
 
-// The keys of an inline calibration, pointing into `camera`; those of the distortion depend on its model and are
-// optional.
-std::vector<ConfigurationKey> calibrationKeys(Camera& camera) {
+struct CalibrationKey {
+  ConfigurationKey key;
+  bool is_needed = true;
+};
+
+// The keys of an inline calibration, pointing into `camera`; those of the distortion depend on its model.
+std::vector<CalibrationKey> calibrationKeys(Camera& camera) {
   std::array<double, 5>& k = camera.distortion;
-  std::vector<ConfigurationKey> keys{
-      {"camera.width", &camera.width, "px", 1, largest_camera_side, "image width"},
-      {"camera.height", &camera.height, "px", 1, largest_camera_side, "image height"},
-      {"camera.fx", &camera.fx, "px", least_focal_length_px, largest_focal_length_px, "focal length along x"},
-      {"camera.fy", &camera.fy, "px", least_focal_length_px, largest_focal_length_px, "focal length along y"},
-      {"camera.cx", &camera.cx, "px", 0, largest_camera_side, "principal point"},
-      {"camera.cy", &camera.cy, "px", 0, largest_camera_side, "principal point"},
+  std::vector<CalibrationKey> keys{
+      {{"camera.width", &camera.width, "px", 1, largest_camera_side, "image width"}},
+      {{"camera.height", &camera.height, "px", 1, largest_camera_side, "image height"}},
+      {{"camera.fx", &camera.fx, "px", least_focal_length_px, largest_focal_length_px, "focal length along x"}},
+      {{"camera.fy", &camera.fy, "px", least_focal_length_px, largest_focal_length_px, "focal length along y"}},
+      {{"camera.cx", &camera.cx, "px", 0, largest_camera_side, "principal point"}},
+      {{"camera.cy", &camera.cy, "px", 0, largest_camera_side, "principal point"}},
   };
   const bool fisheye = camera.model == CameraModel::kannala_brandt;
   const std::array<const char*, 5> fisheye_names{"k1", "k2", "k3", "k4", ""};
   const std::array<const char*, 5> radial_tangential_names{"k1", "k2", "p1", "p2", "k3"};
   for (std::size_t i = 0; i < (fisheye ? 4U : 5U); ++i) {
     const std::string name = fisheye ? fisheye_names[i] : radial_tangential_names[i];
-    keys.push_back({"camera." + name, &k[i], "", -largest_distortion, largest_distortion, "distortion"});
+    keys.push_back({{"camera." + name, &k[i], "", -largest_distortion, largest_distortion, "distortion"}, false});
   }
   return keys;
 }
@@ -56,21 +59,19 @@ void readInlineCalibration(const YAML::Node& section, Configuration& configurati
       reject(model, "camera.model: expected pinhole_radial_tangential or kannala_brandt");
     }
   }
-  const std::vector<ConfigurationKey> keys = calibrationKeys(camera);
-  for (const ConfigurationKey& key : keys) {
-    const std::string name = key.path.substr(key.path.find('.') + 1);
-    const YAML::Node value = section[name];
-    const bool needed = key.documentation != "distortion";
+  const std::vector<CalibrationKey> keys = calibrationKeys(camera);
+  for (const auto& [key, is_needed] : keys) {
+    const YAML::Node value = section[key.name()];
     if (!value) {
-      if (needed) reject(section, key.path + " is missing (" + key.documentation + ", " + expectedValue(key) + ")");
+      if (is_needed) reject(section, key.path + " is missing (" + key.documentation + ", " + expectedValue(key) + ")");
       continue;
     }
     const std::string wrong = value.IsScalar() ? setValue(key, value.Scalar()) : "not a number";
     if (!wrong.empty()) reject(value, key.path + ": " + wrong + "; expected " + expectedValue(key));
   }
   for (const char* name : {"p1", "p2", "k4"}) {
-    const bool has = std::any_of(keys.begin(), keys.end(),
-                                 [&](const auto& key) { return key.path == std::string("camera.") + name; });
+    const bool has =
+        std::any_of(keys.begin(), keys.end(), [&](const CalibrationKey& known) { return known.key.name() == name; });
     if (section[name] && !has)
       reject(section[name], std::string("camera.") + name + " is no coefficient of this camera model");
   }
@@ -161,11 +162,21 @@ bool isCalibration(const YAML::Node& document) {
          (has("fx") || has("image_width") || has("camera_matrix") || has("cam0") || has("intrinsics"));
 }
 
-std::vector<std::string> cameraKeys() {
-  std::vector<std::string> names{"camera.calibration", "camera.body_T_camera", "camera.model"};
-  Camera camera;
-  for (const ConfigurationKey& key : calibrationKeys(camera)) names.push_back(key.path);
-  names.emplace_back("camera.k4");
+std::vector<ConfigurationKey> calibrationKeyNames() {
+  Camera pinhole, fisheye;
+  fisheye.model = CameraModel::kannala_brandt;
+  std::vector<ConfigurationKey> names;
+  for (Camera* camera : {&pinhole, &fisheye}) {
+    for (const CalibrationKey& known : calibrationKeys(*camera)) {
+      const auto is_there = [&](const ConfigurationKey& name) { return name.path == known.key.path; };
+      if (std::any_of(names.begin(), names.end(), is_there)) continue;
+      ConfigurationKey& name = names.emplace_back(known.key);
+      name.documentation += " (" + expectedValue(known.key) + ")";
+      name.field = std::monostate{};
+      name.example = known.is_needed ? "1" : "0";
+      name.for_users = true;
+    }
+  }
   return names;
 }
 
@@ -192,27 +203,14 @@ std::string formatCameraSection(const Configuration& configuration) {
   if (configuration.camera) {
     Camera camera = *configuration.camera;
     text += std::string("  model: ") + modelName(camera.model) + "\n";
-    for (const ConfigurationKey& key : calibrationKeys(camera)) {
-      text += "  " + key.path.substr(key.path.find('.') + 1) + ": " + valueText(key.field) + "\n";
+    for (const CalibrationKey& known : calibrationKeys(camera)) {
+      text += "  " + known.key.name() + ": " + valueText(known.key.field) + "\n";
     }
   }
   text += "  body_T_camera: {translation: [" + numberText(t.x()) + ", " + numberText(t.y()) + ", " + numberText(t.z()) +
           "], quaternion: [" + numberText(q.w()) + ", " + numberText(q.x()) + ", " + numberText(q.y()) + ", " +
           numberText(q.z()) + "]}\n";
   return text;
-}
-
-std::string cameraSectionDocumentation() {
-  return "# The camera. Without a calibration here the one beside the recording is used (camera.yaml, EuRoC's "
-         "sensor.yaml).\n"
-         "camera:\n"
-         "  # file with the calibration, relative to this file; or its keys in its place:\n"
-         "  # model (pinhole_radial_tangential or kannala_brandt), width, height, fx, fy, cx, cy [px], k1, k2, ...\n"
-         "  # calibration: cameras/tum_fr1.yaml\n"
-         "  # pose of the camera (x right, y down, z forward) on the robot, 4x4 matrix row by row or translation [m] "
-         "and\n"
-         "  # unit quaternion (w, x, y, z) (default: the identity)\n"
-         "  # body_T_camera: {translation: [0, 0, 0], quaternion: [1, 0, 0, 0]}\n";
 }
 
 }  // namespace edgeslam

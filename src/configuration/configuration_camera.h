@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "configuration/configuration.h"
+#include "configuration/configuration_value.h"
 
 namespace edgeslam {
 
@@ -18,8 +19,8 @@ using TellProblem = std::function<void(int line, const std::string& problem)>;
 // True for a document that is a camera's calibration by itself, of any of the kinds that readCalibration knows.
 bool isCalibration(const YAML::Node& document);
 
-// Names of the keys that the section may hold, each with "camera." before it.
-std::vector<std::string> cameraKeys();
+// The keys of an inline calibration of either camera model, for the table of keys: documented, without fields.
+std::vector<ConfigurationKey> calibrationKeyNames();
 
 // Fills camera and body_T_camera from the section's mapping; a calibration's path is relative to the configuration
 // file. Unknown and repeated keys are the caller's business.
@@ -27,8 +28,5 @@ void readCameraSection(const YAML::Node& section, Configuration& configuration, 
 
 // The section as YAML; empty where there is neither a camera nor a pose.
 std::string formatCameraSection(const Configuration& configuration);
-
-// The section's documentation with an example, all commented out.
-std::string cameraSectionDocumentation();
 
 }  // namespace edgeslam

@@ -1,37 +1,203 @@
 #include "configuration/configuration_keys.h"
 
-#include <charconv>
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "configuration/configuration_camera.h"
 
 namespace edgeslam {
 namespace {
+
+using Keys = std::vector<ConfigurationKey>;
 
 ConfigurationKey heading(const std::string& section, const std::string& documentation) {
   return {section, std::monostate{}, "", 0, 0, documentation};
 }
 
-}  // namespace
+ConfigurationKey forUsers(ConfigurationKey key) {
+  key.for_users = true;
+  return key;
+}
 
-std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
-  EdgeOptions& edges = settings.tracking.edges;
-  BlurGateOptions& blur_gate = settings.tracking.blur_gate;
-  PointChoiceOptions& points = settings.tracking.points;
-  FramePoseOptions& pose = settings.tracking.pose;
-  FlowOptions& flow = settings.tracking.flow;
-  RefinementOptions& refinement = settings.tracking.refinement;
-  EdgeLockOptions& edge_lock = settings.tracking.edge_lock;
-  MapReuseOptions& reuse = settings.tracking.map_reuse;
-  ViewOptions& view = settings.mapping.view;
-  KeyframeOptions& keyframes = settings.tracking.keyframes;
+// A number whose default cannot be written: the driver's.
+ConfigurationKey withExample(ConfigurationKey key, const std::string& example) {
+  key.example = example;
+  return forUsers(std::move(key));
+}
+
+// A text; with an `example` where it is empty by default.
+ConfigurationKey text(const std::string& path, std::string* field, const std::string& documentation,
+                      const std::string& example = "") {
+  return forUsers({path, field, "", 0, 0, documentation, 1, example});
+}
+
+// A key with a reader of its own.
+ConfigurationKey special(const std::string& path, const std::string& documentation, const std::string& example) {
+  return forUsers({path, std::monostate{}, "", 0, 0, documentation, 1, example});
+}
+
+// The camera: its calibration and its place on the robot, and how it is set.
+Keys cameraKeys(CameraOptions& capture) {
+  Keys keys{
+      heading("camera",
+              "The camera. Without a calibration here the one beside the recording is used (camera.yaml, EuRoC's "
+              "sensor.yaml)"),
+      special("camera.calibration",
+              "file with the calibration, relative to this file; or its keys in its place:", "cameras/tum_fr1.yaml"),
+      special("camera.model", "pinhole_radial_tangential, or kannala_brandt for a fisheye lens",
+              "pinhole_radial_tangential"),
+  };
+  for (const ConfigurationKey& key : calibrationKeyNames()) keys.push_back(key);
+  Keys others{
+      special("camera.body_T_camera",
+              "pose of the camera (x right, y down, z forward) on the robot: 4x4 matrix row by row, or translation [m] "
+              "and\nunit quaternion (w, x, y, z) (default: the identity)",
+              "{translation: [0, 0, 0], quaternion: [1, 0, 0, 0]}"),
+
+      heading("capture",
+              "The live camera. `edgeslam cameras` lists what is there, with the lines to put here. What is left out, "
+              "the\ndriver chooses. What the camera refuses is told when it is opened, with what it allows"),
+      text("capture.device", &capture.device,
+           "a name that stays the same camera's: /dev/v4l/by-id/..., /dev/v4l/by-path/..., libcamera:NAME; or a "
+           "recording",
+           "/dev/v4l/by-id/usb-046d_HD_Pro_Webcam_C920-video-index0"),
+      text("capture.format", &capture.format,
+           "GREY, Y10, Y12, Y16, NV12, NV21, YU12, YUYV, UYVY, MJPEG, RGB24 or BGR24 (default: of the fastest, the one "
+           "of\nthe least work)",
+           "YUYV"),
+      withExample({"capture.width", &capture.width, "px", 16, 16384,
+                   "image width (default: the driver's, or the calibration's)"},
+                  "640"),
+      withExample({"capture.height", &capture.height, "px", 16, 16384, "image height"}, "480"),
+      withExample({"capture.frame_rate", &capture.frame_rate, "frames/s", 0.1, 1000, "default: the fastest up to 30"},
+                  "30"),
+      special("capture.region", "part of the sensor that is read, [left, top, width, height] [px]",
+              "[0, 0, 1280, 960]"),
+      special("capture.exposure",
+              "auto, or the exposure time [ms]; fixed, it also makes the time stamps those of its middle", "8"),
+      withExample({"capture.longest_exposure", &capture.longest_exposure_ms, "ms", 0.01, 1000,
+                   "the automatic exposure stays below this, against blur, where the driver lets it be set"},
+                  "10"),
+      special("capture.gain", "auto, or a number: in the driver's units; for white_balance [K]", "auto"),
+      special("capture.white_balance", "", "4500"),
+      special("capture.focus", "", "0"),
+      special("capture.power_line_frequency", "lights that flicker at 50 or 60 Hz; off or auto", "50"),
+      special("capture.controls", "any other control, by the name that `edgeslam cameras` shows",
+              "{brightness: 128, sharpness: 3}"),
+  };
+  std::move(others.begin(), others.end(), std::back_inserter(keys));
+  return keys;
+}
+
+// What `edgeslam run` gives out and keeps.
+Keys serviceKeys(ServiceOptions& service, RecordingSpace& space) {
+  LcmOptions& lcm = service.lcm;
+  ScaleOptions& scale = service.scale;
+  ViewerOptions& viewer = service.viewer;
+  Keys keys{
+      heading("lcm", "Messages to the robot's controller"),
+      text("lcm.url", &lcm.url, "where messages go (default: LCM_DEFAULT_URL of the environment, or LCM's own)",
+           "udpm://239.255.76.67:7667"),
+      {"lcm.ttl", &lcm.time_to_live, "", -1, 255,
+       "reach of the messages: 0 this computer, 1 the local network; -1: as the URL says"},
+      text("lcm.pose_channel", &lcm.pose_channel, "names of the channels"),
+      text("lcm.odometry_channel", &lcm.odometry_channel, ""),
+      text("lcm.state_channel", &lcm.state_channel, ""),
+      text("lcm.status_channel", &lcm.status_channel, ""),
+      text("lcm.map_channel", &lcm.map_channel, ""),
+      text("lcm.command_channel", &lcm.command_channel, ""),
+      text("lcm.answer_channel", &lcm.answer_channel, ""),
+      {"lcm.map_interval_s", &service.map_interval_s, "s", 0, 3600,
+       "the map is sent at most so often where it changed; 0: on request only"},
+
+      heading("map", "The map on the disk, of `edgeslam run`"),
+      text("map.file", &service.map_file,
+           "written at the end, on SIGHUP and on command, whole or not at all; relative to the working directory",
+           "robot.map"),
+      {"map.go_on", &service.goes_on_with_map, "", 0, 0,
+       "at the start, continue the map in the file, where there is one: the camera is looked for in it"},
+
+      heading("recording", "The flight recorder of live runs"),
+      text("recording.folder", &service.recordings_folder,
+           "where `edgeslam run` makes a folder for each recording; relative to the working directory", "recordings"),
+      {"recording.from_start", &service.records_from_start, "", 0, 0,
+       "`edgeslam run` records from the start, not only on command"},
+      {"recording.most_megabytes", &space.most_megabytes, "MB", 1, 1e9, "most that a recording takes"},
+      {"recording.kept_free_megabytes", &space.kept_free_megabytes, "MB", 0, 1e9,
+       "left free for others; at less the recording ends"},
+
+      heading("scale", "Metres a map unit: by command from a known distance, or found by itself"),
+      text("scale.source", &scale.source,
+           "none: metres by command only; camera_height: over the ground; odometry: of the wheels, by LCM"),
+      {"scale.camera_height_m", &scale.height.camera_height_m, "m", 0, 100,
+       "of the camera's centre over the ground; 0: not given"},
+      {"scale.camera_height_sigma_m", &scale.height.sigma_m, "m", 0, 10, "standard deviation of it"},
+      {"scale.ground_tilt_deg", &scale.height.largest_tilt_deg, "deg", 1, 45,
+       "largest angle of the ground's normal to the body's z axis (camera.body_T_camera)"},
+      text("scale.odometry_channel", &scale.odometry.channel,
+           "of bot_core.pose_t: the body's pose in metres, time stamps of CLOCK_MONOTONIC as the camera's", "ODOMETRY"),
+      {"scale.odometry_sigma", &scale.odometry.sigma, "", 0, 1,
+       "standard deviation of the odometry's own scale (size of the wheels), as a share of it"},
+      {"scale.odometry_sigma_per_metre", &scale.odometry.sigma_per_metre, "m", 0.001, 1,
+       "standard deviation of a way of 1 m, by slip; grows with the root of the way"},
+      {"scale.odometry_window_m", &scale.odometry.window_m, "m", 0.05, 100,
+       "way of the body from one comparison with the camera to the next"},
+      {"scale.largest_sigma", &scale.largest_sigma, "", 0.001, 1,
+       "a scale is refused where its standard deviation is over this share of it"},
+      {"scale.metres_per_unit", &scale.metres_per_unit, "m", 0, 1e6,
+       "of the saved map that the run continues; 0: not known"},
+      {"scale.sigma", &scale.sigma, "", 0, 1, "standard deviation of that, as a share of it"},
+
+      heading("viewer", "A page in the browser for people who look on"),
+      {"viewer.enabled", &viewer.enabled, "", 0, 0, "`edgeslam run` serves a page that shows the run"},
+      text("viewer.address", &viewer.address,
+           "address of this computer where it is served: 127.0.0.1 to this computer alone (ssh -L brings it to "
+           "others),\n"
+           "0.0.0.0 to all"),
+      {"viewer.port", &viewer.port, "", 1, 65535, "TCP"},
+      text("viewer.token", &viewer.token,
+           "who looks on must know it, 16 to 128 letters and digits (openssl rand -hex 16); needed for other addresses",
+           "0123456789abcdef0123456789abcdef"),
+  };
+  for (ConfigurationKey& key : keys) key.for_users = !key.isHeading();
+  return keys;
+}
+
+Keys methodKeys(Settings& settings) {
+  EdgeOptions& edges = settings.edges;
+  PointChoiceOptions& points = settings.points;
   TrackerOptions& tracking = settings.tracking;
+  BlurGateOptions& blur_gate = tracking.blur_gate;
+  FramePoseOptions& pose = tracking.location.pose;
+  FlowOptions& flow = tracking.location.flow;
+  RefinementOptions& refinement = tracking.location.refinement;
+  EdgeLockOptions& edge_lock = tracking.location.edge_lock;
+  MapReuseOptions& reuse = tracking.map_reuse;
+  KeyframeOptions& keyframes = tracking.keyframes;
+  ViewOptions& view = settings.mapping.view;
   InitialisationOptions& initialisation = settings.mapping.initialisation;
-  QualityOptions& quality = settings.mapping.initialisation.quality;
+  QualityOptions& quality = initialisation.quality;
   NewPointOptions& new_points = settings.mapping.new_points;
   LocalAdjustmentOptions& adjustment = settings.mapping.local_adjustment;
-  BundleOptions& bundle = settings.mapping.local_adjustment.bundle;
+  BundleOptions& bundle = adjustment.bundle;
   CullingOptions& culling = settings.mapping.culling;
   ThreadOptions& threads = settings.threads;
   return {
+      heading("threads", "Threads of a live run; what is not allowed is told and left out"),
+      forUsers({"threads.capture_priority", &threads.capture_priority, "", 0, 99,
+                "real-time priority (SCHED_FIFO); 0: the usual scheduling"}),
+      forUsers({"threads.tracking_priority", &threads.tracking_priority, "", 0, 99, "likewise"}),
+      forUsers({"threads.publishing_priority", &threads.publishing_priority, "", 0, 99, "likewise"}),
+      forUsers({"threads.mapping_nice", &threads.mapping_nice, "", 0, 19, "nice level"}),
+      forUsers({"threads.places_nice", &threads.places_nice, "", 0, 19, "nice level"}),
+      forUsers({"threads.tracking_processor", &threads.tracking_processor, "", -1, 1023,
+                "the thread keeps to this processor; -1: any"}),
+      forUsers({"threads.mapping_processor", &threads.mapping_processor, "", -1, 1023, "likewise"}),
+      forUsers({"threads.places_processor", &threads.places_processor, "", -1, 1023, "likewise"}),
+      forUsers(
+          {"threads.lock_memory", &threads.lock_memory, "", 0, 0, "keeps the program's memory from being swapped out"}),
+
       heading("edges", "Edges: zero crossings of a difference of Gaussians, joined into chains"),
       {"edges.sigma", &edges.sigma, "px", 0.3, 10, "standard deviation of the narrower Gaussian"},
       {"edges.sigma_ratio", &edges.sigma_ratio, "", 1.05, 4,
@@ -50,23 +216,24 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
        "after as many in a row the average starts anew"},
 
       heading("points", "Choice of the points to track, and how exactly each is measured"),
-      {"points.count", &points.count, "points", 50, 5000, "points tracked at once"},
+      forUsers({"points.count", &points.count, "points", 50, 5000, "points tracked at once; fewer are faster"}),
       {"points.spacing", &points.spacing, "px", 1, 100, "least distance between two points"},
       {"points.cell", &points.cell, "px", 4, 1000, "side of a cell of the grid over which points are spread"},
       {"points.corner_share", &points.corner_share, "", 0, 1,
        "most of the points that corner-like ones may take first"},
-      {"points.tensor_window", &points.tensor_window, "px", 3, 63, "side of the structure tensor's window", 2},
-      {"points.corner_ratio", &points.corner_ratio, "", 0, 1,
+      {"points.tensor_window", &points.accuracy.tensor_window, "px", 3, 63, "side of the structure tensor's window", 2},
+      {"points.corner_ratio", &points.accuracy.corner_ratio, "", 0, 1,
        "corner-like: smaller over larger eigenvalue above this ..."},
-      {"points.corner_strength", &points.corner_strength, "grey^2/px^2", 0, 10000,
+      {"points.corner_strength", &points.accuracy.corner_strength, "grey^2/px^2", 0, 10000,
        "... and smaller eigenvalue above this"},
-      {"points.noise", &points.noise, "grey^2/px^2", 0, 10000,
+      {"points.noise", &points.accuracy.noise, "grey^2/px^2", 0, 10000,
        "usual noise of the structure tensor; where an image has more, that is measured"},
-      {"points.sigma_edge", &points.sigma_edge, "px", 0.01, 10, "standard deviation of a measurement across an edge"},
-      {"points.sigma_corner", &points.sigma_corner, "px", 0.01, 10, "the same of a corner-like point"},
+      {"points.sigma_edge", &points.accuracy.sigma_edge, "px", 0.01, 10,
+       "standard deviation of a measurement across an edge"},
+      {"points.sigma_corner", &points.accuracy.sigma_corner, "px", 0.01, 10, "the same of a corner-like point"},
       {"points.border", &points.border, "px", 0, 200, "points keep this distance from the image's border"},
 
-      {"points.weigh_edges", &points.weigh_edges, "", 0, 0,
+      {"points.weigh_edges", &points.accuracy.weigh_edges, "", 0, 0,
        "false counts a point as well known along its edge as across; to measure the gain"},
 
       heading("pose", "Pose of each frame: robust Gauss-Newton on the edge measurements"),
@@ -122,16 +289,18 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
       {"tracking.fewest_tracks", &tracking.fewest_tracks, "points", 8, 1000, "fewer do not start a map"},
       {"tracking.restart_share", &tracking.restart_share, "", 0, 1,
        "of the first frame's points: fewer left, a new start"},
-      {"tracking.outlier_frames", &tracking.outlier_frames, "frames", 1, 1000,
+      {"tracking.outlier_frames", &tracking.location.outlier_frames, "frames", 1, 1000,
        "a point that misses the pose so often in a row is dropped"},
-      {"tracking.least_inlier_share", &tracking.least_inlier_share, "", 0, 1,
+      {"tracking.least_inlier_share", &tracking.location.acceptance.least_inlier_share, "", 0, 1,
        "of the map points followed: fewer agree, and the pose is not believed"},
 
       heading("keyframes", "Choice of the keyframes (P8 to P12)"),
       {"keyframes.rotation_deg", &keyframes.rotation_deg, "deg", 1, 180, "rotation since the last keyframe"},
       {"keyframes.track_share", &keyframes.track_share, "", 0, 1, "correspondences left, of their running average"},
-      {"keyframes.fewest_mapped", &keyframes.fewest_mapped, "points", 4, 10000, "map points followed ..."},
-      {"keyframes.mapped_share", &keyframes.mapped_share, "", 0, 1, "... or this share of those at the last keyframe"},
+      {"keyframes.fewest_mapped", &keyframes.fewest_mapped, "points", 4, 10000,
+       "map points that agree with the pose ..."},
+      {"keyframes.mapped_share", &keyframes.mapped_share, "", 0, 1,
+       "... or this share of the most there were since the last keyframe"},
       {"keyframes.displacement_share", &keyframes.displacement_share, "", 0, 1,
        "mean displacement since the last keyframe, of the image's width"},
       {"keyframes.interval_s", &keyframes.interval_s, "s", 0.05, 60, "at the latest after this time"},
@@ -188,25 +357,13 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
        "a point that so many others see does not need a keyframe ..."},
       {"culling.redundant_share", &culling.redundant_share, "", 0.1, 1,
        "... and a keyframe that this share of its points does not need is taken out"},
-      {"culling.most_keyframes", &culling.most_keyframes, "keyframes", 20, 100000, "most that the map keeps"},
-      {"culling.most_megabytes", &culling.most_megabytes, "MB", 10, 1000000, "most memory that the map takes"},
+      forUsers({"culling.most_keyframes", &culling.most_keyframes, "keyframes", 20, 100000, "most that the map keeps"}),
+      forUsers(
+          {"culling.most_megabytes", &culling.most_megabytes, "MB", 10, 1000000, "most memory that the map takes"}),
 
       heading("pipeline", "Schedule"),
       {"pipeline.view_delay_frames", &settings.view_delay_frames, "frames", 1, 100,
        "the map that follows from a keyframe is used so many frames later"},
-
-      heading("threads", "Threads of a live run; what is not allowed is told and left out"),
-      {"threads.capture_priority", &threads.capture_priority, "", 0, 99,
-       "real-time priority (SCHED_FIFO); 0: the usual scheduling"},
-      {"threads.tracking_priority", &threads.tracking_priority, "", 0, 99, "likewise"},
-      {"threads.publishing_priority", &threads.publishing_priority, "", 0, 99, "likewise"},
-      {"threads.mapping_nice", &threads.mapping_nice, "", 0, 19, "nice level"},
-      {"threads.places_nice", &threads.places_nice, "", 0, 19, "nice level"},
-      {"threads.tracking_processor", &threads.tracking_processor, "", -1, 1023,
-       "the thread keeps to this processor; -1: any"},
-      {"threads.mapping_processor", &threads.mapping_processor, "", -1, 1023, "likewise"},
-      {"threads.places_processor", &threads.places_processor, "", -1, 1023, "likewise"},
-      {"threads.lock_memory", &threads.lock_memory, "", 0, 0, "keeps the program's memory from being swapped out"},
 
       heading("recovery", "Track-loss recovery (P21) and relocalisation (P22)"),
       {"recovery.enabled", &settings.mapping.recovery_enabled, "", 0, 0, "off only to measure what it gains"},
@@ -227,53 +384,19 @@ std::vector<ConfigurationKey> configurationKeys(Settings& settings) {
   };
 }
 
-std::string numberText(double value) {
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof(digits), value).ptr;
-  return std::string(digits, end);
+}  // namespace
+
+std::vector<ConfigurationKey> configurationKeys(Configuration& configuration) {
+  Keys keys = cameraKeys(configuration.capture);
+  for (ConfigurationKey& key : serviceKeys(configuration.service, configuration.settings.recording))
+    keys.push_back(key);
+  for (ConfigurationKey& key : methodKeys(configuration.settings)) keys.push_back(key);
+  return keys;
 }
 
-std::string valueText(const ConfigurationField& field) {
-  if (const auto* number = std::get_if<double*>(&field)) return numberText(**number);
-  if (const auto* count = std::get_if<int*>(&field)) return std::to_string(**count);
-  if (const auto* flag = std::get_if<bool*>(&field)) return **flag ? "true" : "false";
-  return "";
-}
-
-std::string expectedValue(const ConfigurationKey& key) {
-  if (std::holds_alternative<bool*>(key.field)) return "true or false";
-  return numberText(key.least) + " to " + numberText(key.largest) + (key.unit.empty() ? "" : " " + key.unit) +
-         (key.step > 1 ? " in steps of " + std::to_string(key.step) : "");
-}
-
-bool parseNumber(const std::string& text, double& value) {
-  const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
-  const char* end = text.data() + text.size();
-  double number = 0;
-  const auto [stop, error] = std::from_chars(begin, end, number);
-  if (error != std::errc() || stop != end || !std::isfinite(number)) return false;
-  value = number;
-  return true;
-}
-
-std::string setValue(const ConfigurationKey& key, const std::string& text) {
-  if (const auto* flag = std::get_if<bool*>(&key.field)) {
-    if (text != "true" && text != "false") return "'" + text + "' is neither true nor false";
-    **flag = text == "true";
-    return "";
-  }
-  double value = 0;
-  if (!parseNumber(text, value)) return "'" + text + "' is not a finite number";
-  const auto* count = std::get_if<int*>(&key.field);
-  if (count && value != std::floor(value)) return "'" + text + "' is not a whole number";
-  if (value < key.least || value > key.largest) return text + " is out of range";
-  if (count && std::fmod(value - key.least, key.step) != 0) return text + " is between the steps";
-  if (count) {
-    **count = static_cast<int>(value);
-  } else if (const auto* number = std::get_if<double*>(&key.field)) {
-    **number = value;
-  }
-  return "";
+bool isOfMethod(const ConfigurationKey& key) {
+  constexpr std::array<const char*, 7> others{"camera", "capture", "lcm", "map", "recording", "scale", "viewer"};
+  return std::find(others.begin(), others.end(), key.section()) == others.end();
 }
 
 }  // namespace edgeslam

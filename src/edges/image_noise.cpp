@@ -51,10 +51,4 @@ double gradientNoise(const cv::Mat& grey) {
   return std::min(0.5 * deviation * deviation, kMostNoise);
 }
 
-PointChoiceOptions withNoiseOf(const cv::Mat& grey, const PointChoiceOptions& options) {
-  PointChoiceOptions of_image = options;
-  of_image.excess_noise = std::max(0.0, gradientNoise(grey) - options.noise);
-  return of_image;
-}
-
 }  // namespace edgeslam

@@ -26,15 +26,15 @@ Eigen::Vector2f normalAlongChain(const EdgeMap& edges, const EdgePoint& edge) {
 }
 
 PointCandidate makeCandidate(const cv::Mat& grey, const EdgeMap& edges, const EdgePoint& edge,
-                             const PointChoiceOptions& options) {
+                             const PointAccuracy& accuracy) {
   PointCandidate candidate;
   candidate.pixel = edge.pixel;
   candidate.chain = edge.chain;
   candidate.gradient = edge.gradient;
-  candidate.products = gradientProductsAround(grey, edge.pixel, options.tensor_window);
+  candidate.products = gradientProductsAround(grey, edge.pixel, accuracy.options.tensor_window);
   const Eigenvalues values = eigenvalues(candidate.products);
   candidate.l2 = values.l2;
-  candidate.corner = isCornerLike(values, options);
+  candidate.corner = isCornerLike(values, accuracy);
   if (candidate.corner) {
     const Eigen::Vector2f direction = structureTensor(candidate.products).direction;
     candidate.normal = direction.dot(edge.normal) < 0 ? Eigen::Vector2f(-direction) : direction;
@@ -46,26 +46,17 @@ PointCandidate makeCandidate(const cv::Mat& grey, const EdgeMap& edges, const Ed
 
 }  // namespace
 
-bool isCornerLike(const Eigenvalues& values, const PointChoiceOptions& options) {
-  const auto noise = static_cast<float>(options.excess_noise);
-  const float l1 = values.l1 - noise, l2 = values.l2 - noise;
-  return l2 > static_cast<float>(options.corner_ratio) * l1 && l2 > static_cast<float>(options.corner_strength);
-}
-
-float informativeL2(float l2, const PointChoiceOptions& options) {
-  return std::max(l2 - static_cast<float>(options.noise + options.excess_noise), 1e-6F);
-}
-
 void findPointCandidates(const cv::Mat& grey, const EdgeMap& edges, const PointSpacing& spacing,
-                         const PointChoiceOptions& options, std::vector<PointCandidate>& candidates) {
-  const auto border = static_cast<float>(options.border);
+                         const PointSpread& spread, const PointAccuracy& accuracy,
+                         std::vector<PointCandidate>& candidates) {
+  const auto border = static_cast<float>(spread.border);
   const float right = static_cast<float>(grey.cols - 1) - border;
   const float bottom = static_cast<float>(grey.rows - 1) - border;
   for (size_t i = 0; i < edges.points.size(); i += kCandidateStep) {
     const EdgePoint& edge = edges.points[i];
     const Eigen::Vector2f& pixel = edge.pixel;
     if (pixel.x() < border || pixel.y() < border || pixel.x() > right || pixel.y() > bottom) continue;
-    if (spacing.isFree(pixel)) candidates.push_back(makeCandidate(grey, edges, edge, options));
+    if (spacing.isFree(pixel)) candidates.push_back(makeCandidate(grey, edges, edge, accuracy));
   }
 }
 

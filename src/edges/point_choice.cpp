@@ -19,15 +19,15 @@ size_t directionOf(const Eigen::Vector2f& normal) {
   return (normal.x() > 0) == (normal.y() > 0) ? 1 : 3;
 }
 
-ChosenPoint makePoint(const PointCandidate& candidate, const PointChoiceOptions& options) {
+ChosenPoint makePoint(const PointCandidate& candidate, const PointAccuracy& accuracy) {
   ChosenPoint point;
   point.pixel = candidate.pixel;
   point.normal = candidate.normal;
   point.tensor = structureTensor(candidate.products);
   point.corner = candidate.corner;
   point.chain = candidate.chain;
-  point.sigma_normal = static_cast<float>(point.corner ? options.sigma_corner : options.sigma_edge);
-  const float stretch = std::sqrt(std::max(1.0F, point.tensor.l1 / informativeL2(point.tensor.l2, options)));
+  point.sigma_normal = static_cast<float>(point.corner ? accuracy.options.sigma_corner : accuracy.options.sigma_edge);
+  const float stretch = std::sqrt(std::max(1.0F, point.tensor.l1 / informativeL2(point.tensor.l2, accuracy)));
   point.sigma_tangent = std::min(point.sigma_normal * stretch, kUnknownAlong);
   return point;
 }
@@ -153,7 +153,7 @@ RankedCandidate bestEdge(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
 // Cells with the fewest points come first, so that a rich region doesn't take all: in round n each cell with n points
 // or fewer gives one, the best candidate of all the cells first. Until `budget` points are taken or nothing is left.
 template <typename BestOfCell>
-void takeRoundByRound(int budget, BestOfCell best_of_cell, const PointChoiceOptions& options,
+void takeRoundByRound(int budget, BestOfCell best_of_cell, const PointAccuracy& accuracy,
                       PointChoiceWorkspace& workspace, std::vector<ChosenPoint>& chosen) {
   const size_t limit = chosen.size() + static_cast<size_t>(std::max(budget, 0));
   int fullest = 0;
@@ -174,7 +174,7 @@ void takeRoundByRound(int budget, BestOfCell best_of_cell, const PointChoiceOpti
       const PointCandidate& candidate = candidateOf(workspace, offer.candidate);
       if (chosen.size() >= limit || !workspace.spacing.isFree(candidate.pixel)) continue;
       workspace.spacing.add(candidate.pixel);
-      chosen.push_back(makePoint(candidate, options));
+      chosen.push_back(makePoint(candidate, accuracy));
       ChoiceCell& cell = workspace.cells[static_cast<size_t>(offer.cell)];
       ++cell.taken;
       ++cell.taken_of_direction[directionOf(candidate.normal)];
@@ -184,43 +184,49 @@ void takeRoundByRound(int budget, BestOfCell best_of_cell, const PointChoiceOpti
 }
 
 // Memory for all that an image of this size may ask for.
-void reserve(const cv::Size& size, const EdgeMap& edges, size_t cells, const PointChoiceOptions& options,
+void reserve(const cv::Size& size, const EdgeMap& edges, size_t cells, const PointSpread& spread,
              PointChoiceWorkspace& workspace, std::vector<ChosenPoint>& chosen) {
   const size_t most_candidates = std::max(mostEdgePoints(size), edges.points.size()) / kCandidateStep + 1;
   workspace.candidates.reserve(most_candidates);
   workspace.ranked.reserve(2 * most_candidates);
   workspace.cells.reserve(cells);
   workspace.offers.reserve(cells);
-  chosen.reserve(static_cast<size_t>(options.count));
+  chosen.reserve(static_cast<size_t>(spread.count));
 }
 
 }  // namespace
 
 void choosePoints(const cv::Mat& grey, const EdgeMap& edges, const std::vector<Eigen::Vector2f>& occupied,
-                  const PointChoiceOptions& options, PointChoiceWorkspace& workspace,
+                  const PointSpread& spread, const PointAccuracy& accuracy, PointChoiceWorkspace& workspace,
                   std::vector<ChosenPoint>& chosen) {
   chosen.clear();
-  const int wanted = options.count - static_cast<int>(std::min<size_t>(occupied.size(), static_cast<size_t>(INT_MAX)));
+  const int wanted = spread.count - static_cast<int>(std::min<size_t>(occupied.size(), static_cast<size_t>(INT_MAX)));
   if (grey.empty() || edges.points.empty() || wanted <= 0) return;
-  const Grid grid(grey.size(), options.cell);
-  reserve(grey.size(), edges, grid.count(), options, workspace, chosen);
-  workspace.spacing.start(grey.size(), options.spacing, static_cast<size_t>(options.count));
+  const Grid grid(grey.size(), spread.cell);
+  reserve(grey.size(), edges, grid.count(), spread, workspace, chosen);
+  workspace.spacing.start(grey.size(), spread.spacing, static_cast<size_t>(spread.count));
   for (const Eigen::Vector2f& pixel : occupied) workspace.spacing.add(pixel);
   workspace.candidates.clear();
-  findPointCandidates(grey, edges, workspace.spacing, options, workspace.candidates);
+  findPointCandidates(grey, edges, workspace.spacing, spread, accuracy, workspace.candidates);
   sortIntoCells(grid, occupied, workspace);
 
-  const int corners = std::min(wanted, static_cast<int>(options.corner_share * options.count));
-  takeRoundByRound(corners, bestCorner, options, workspace, chosen);
-  takeRoundByRound(wanted - static_cast<int>(chosen.size()), bestEdge, options, workspace, chosen);
+  const int corners = std::min(wanted, static_cast<int>(spread.corner_share * spread.count));
+  takeRoundByRound(corners, bestCorner, accuracy, workspace, chosen);
+  takeRoundByRound(wanted - static_cast<int>(chosen.size()), bestEdge, accuracy, workspace, chosen);
+}
+
+std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,
+                                      const std::vector<Eigen::Vector2f>& occupied, const PointSpread& spread,
+                                      const PointAccuracy& accuracy) {
+  PointChoiceWorkspace workspace;
+  std::vector<ChosenPoint> chosen;
+  choosePoints(grey, edges, occupied, spread, accuracy, workspace, chosen);
+  return chosen;
 }
 
 std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,
                                       const std::vector<Eigen::Vector2f>& occupied, const PointChoiceOptions& options) {
-  PointChoiceWorkspace workspace;
-  std::vector<ChosenPoint> chosen;
-  choosePoints(grey, edges, occupied, options, workspace, chosen);
-  return chosen;
+  return choosePoints(grey, edges, occupied, options, PointAccuracy{options.accuracy});
 }
 
 }  // namespace edgeslam

@@ -60,13 +60,19 @@ struct PointChoiceWorkspace {
   std::vector<CellOffer> offers;
 };
 
-// Fills `chosen` with at most options.count - occupied.size() new points, none nearer than `spacing` to an occupied
-// pixel or to each other. Allocates only where `workspace` and `chosen` were not used with these options for an image
-// of this size, or `edges` has more than mostEdgePoints.
+// Fills `chosen` with at most spread.count - occupied.size() new points, none nearer than `spread.spacing` to an
+// occupied pixel or to each other. Allocates only where `workspace` and `chosen` were not used with these options for
+// an image of this size, or `edges` has more than mostEdgePoints.
 void choosePoints(const cv::Mat& grey, const EdgeMap& edges, const std::vector<Eigen::Vector2f>& occupied,
-                  const PointChoiceOptions& options, PointChoiceWorkspace& workspace, std::vector<ChosenPoint>& chosen);
+                  const PointSpread& spread, const PointAccuracy& accuracy, PointChoiceWorkspace& workspace,
+                  std::vector<ChosenPoint>& chosen);
 
 // The same in memory of its own.
+std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,
+                                      const std::vector<Eigen::Vector2f>& occupied, const PointSpread& spread,
+                                      const PointAccuracy& accuracy);
+
+// Likewise, of an image that has the usual noise.
 std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,
                                       const std::vector<Eigen::Vector2f>& occupied, const PointChoiceOptions& options);
 

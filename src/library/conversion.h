@@ -8,7 +8,7 @@
 #include "configuration/configuration.h"
 #include "edgeslam/types.h"
 #include "map/map.h"
-#include "pipeline/frame_result.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 

@@ -32,15 +32,25 @@ struct PointObservation {
   int order = 0;   // place along that chain
 };
 
-// A frame on its way to mapping: every frame while there is no map, keyframes afterwards.
+// What a frame on its way to mapping is there for.
+enum class FrameKind {
+  first,     // a map is started from it, in place of what there was
+  start,     // follows the first frame, while the map does not stand yet
+  keyframe,  // extends the map
+  lost       // its pose was lost and is looked for
+};
+
+// A frame on its way to mapping: every frame while there is no map, keyframes and lost frames afterwards.
 struct TrackedFrame {
+  FrameKind kind = FrameKind::start;
   std::int64_t frame_index = 0;
   std::int64_t time_ns = 0;
-  Pose world_T_camera;  // as tracking estimated it
+  Pose world_T_camera;  // as tracking estimated it; of a lost frame without meaning
   std::vector<PointObservation> observations;
-  std::shared_ptr<const FrameImages> images;
-  KeyframeId keyframe = -1;  // its number, or -1 for a frame that only helps the initialisation
-  const char* reason = "";   // which criterion made it a keyframe
+  std::shared_ptr<const FrameImages> images;  // null for FrameKind::start
+  KeyframeId keyframe =
+      -1;  // its number, of a lost frame the one that it gets if it is recovered; -1 for FrameKind::start
+  const char* reason = "";  // which criterion made it a keyframe
 };
 
 struct Keyframe {

@@ -1,4 +1,5 @@
-// P20: bundle adjustment of all keyframes and points.
+// P20: bundle adjustment of all keyframes and points. It is mapping's, as local adjustment is, but takes so long that
+// places' thread does it, on a copy of the map.
 #pragma once
 
 #include "mapping/local_adjustment.h"
@@ -11,8 +12,8 @@ struct GlobalAdjustmentOptions {
 
 // Adjusts the whole map; takes out outliers and points that lost their depth, as `local` says. Keyframe 0 stays where
 // it is, and the keyframe farthest from it keeps its distance. False where the solver failed or there are fewer than 2
-// keyframes (the map is then as it was).
+// keyframes, or where `interrupted` became true (the map is then as it was).
 bool adjustGlobally(const Camera& camera, const GlobalAdjustmentOptions& options, const LocalAdjustmentOptions& local,
-                    Map& map);
+                    Map& map, const std::atomic<bool>* interrupted = nullptr);
 
 }  // namespace edgeslam

@@ -93,7 +93,7 @@ bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, 
 }
 
 bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options, const std::vector<KeyframeId>& free,
-                     const std::vector<KeyframeId>& fixed, Map& map) {
+                     const std::vector<KeyframeId>& fixed, Map& map, const std::atomic<bool>* interrupted) {
   BundleProblem problem;
   std::vector<int> camera_of(numberOfKeyframes(map), -1);  // index in the problem, by keyframe
   std::vector<KeyframeId> keyframe_of;
@@ -133,7 +133,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
       observed.emplace_back(id, keyframe);
     }
   }
-  const BundleResult result = adjustBundle(camera, problem, options.bundle);
+  const BundleResult result = adjustBundle(camera, problem, options.bundle, interrupted);
   if (!result.usable) return false;
 
   for (std::size_t k = 0; k < problem.cameras.size(); ++k) {

@@ -22,8 +22,8 @@ struct LocalAdjustmentOptions {
 // failed (the map is then as it was).
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map);
 
-// The same over the given keyframes; `fixed` ones only hold the gauge.
+// The same over the given keyframes; `fixed` ones only hold the gauge. False also where `interrupted` became true.
 bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options, const std::vector<KeyframeId>& free,
-                     const std::vector<KeyframeId>& fixed, Map& map);
+                     const std::vector<KeyframeId>& fixed, Map& map, const std::atomic<bool>* interrupted = nullptr);
 
 }  // namespace edgeslam

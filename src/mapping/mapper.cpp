@@ -13,7 +13,7 @@ void Mapper::goOnWith(Map map) {
 }
 
 bool Mapper::add(const TrackedFrame& frame) {
-  if (frame.keyframe == 0) {  // a start, or a new one
+  if (frame.kind == FrameKind::first) {
     initialised_ = false;
     map_ = Map();
     candidates_.clear();
@@ -22,7 +22,7 @@ bool Mapper::add(const TrackedFrame& frame) {
     return false;
   }
   if (initialised_) {
-    if (frame.keyframe < 0) {  // was on its way when the map came to stand
+    if (frame.kind == FrameKind::start) {  // was on its way when the map came to stand
       const std::optional<Pose> pose = initialisation_.locate(frame, early_poses_.back().second);
       if (pose) early_poses_.emplace_back(frame.frame_index, *pose);
       return false;

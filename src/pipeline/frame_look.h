@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "pipeline/frame_result.h"
 #include "pipeline/triple_buffer.h"
+#include "tracking/frame_result.h"
 #include "tracking/tracker.h"
 
 namespace edgeslam {

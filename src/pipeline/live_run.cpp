@@ -37,10 +37,10 @@ LiveRun::LiveRun(const Camera& camera, const Settings& settings, const LiveOptio
   sem_init(&frame_ready_, 0, 0);
   sem_init(&result_ready_, 0, 0);
   messages_.forEachSlot([&](MappingMessage& message) {
-    message.frame.observations.reserve(static_cast<std::size_t>(settings.tracking.points.count));
+    message.frame.observations.reserve(static_cast<std::size_t>(settings.points.count));
   });
   for (MappingMessage& message : new_messages_.all()) {
-    message.frame.observations.reserve(static_cast<std::size_t>(settings.tracking.points.count));
+    message.frame.observations.reserve(static_cast<std::size_t>(settings.points.count));
   }
   results_.forEachSlot([](Published& published) {
     published.result.reason.reserve(longest_reason);

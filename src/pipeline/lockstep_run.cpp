@@ -74,7 +74,7 @@ bool LockstepRun::isDue(const DueUpdate& update, std::int64_t frame_index) const
 }
 
 void LockstepRun::hand(MappingMessage& message) {
-  if (!recorded_ && !message.lost) applyDueCorrections(keyframes_ + 1);
+  if (!recorded_ && message.frame.kind != FrameKind::lost) applyDueCorrections(keyframes_ + 1);
   remember(mapping_.handle(message));
   if (mapping_.hasNewKeyframe()) {
     ++keyframes_;

@@ -13,11 +13,11 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
   new_keyframe_ = false;
   found_.reset();
   not_found_.clear();
-  if (message.lost) {
+  if (message.frame.kind == FrameKind::lost) {
     find(message);
     return nextUpdate();
   }
-  if (message.frame.keyframe == 0) map_since_message_ = message.number;
+  if (message.frame.kind == FrameKind::first) map_since_message_ = message.number;
   if (!mapper_.add(message.frame)) return std::nullopt;
   if (mapper_.initialised()) {
     new_keyframe_ = true;

@@ -16,7 +16,9 @@ namespace edgeslam {
 class MappingWorker {
  public:
   MappingWorker(const Camera& camera, const Settings& settings)
-      : settings_(settings), mapper_(camera, settings.mapping), relocalisation_(camera, settings.relocalisation) {}
+      : settings_(settings),
+        mapper_(camera, settings.mapping),
+        relocalisation_(camera, settings.points.accuracy, settings.relocalisation) {}
 
   // Before the first message: goes on with a map made earlier, of the same camera.
   void goOnWith(Map map);

@@ -12,6 +12,7 @@
 #include "map/map_view.h"
 #include "mapping/culling.h"
 #include "pipeline/run_result.h"
+#include "tracking/frame_result.h"
 #include "tracking/tracker.h"
 
 namespace edgeslam {
@@ -19,8 +20,7 @@ namespace edgeslam {
 // Tracking to mapping: a frame, or a frame whose pose was lost.
 struct MappingMessage {
   std::int64_t number = 0;  // counted from 0
-  TrackedFrame frame;       // of a lost frame: its tracks, without a pose, and the number it gets if it is recovered
-  bool lost = false;
+  TrackedFrame frame;
   // Of a lost frame:
   std::shared_ptr<const EdgeMap> edges;
   std::optional<Pose> last_good_pose;  // none before the first

@@ -32,9 +32,8 @@ Correction PlacesWorker::work(const Snapshot& snapshot) {
     last_global_ = map.keyframes.back().id;
     last_global_ns_ = map.keyframes.back().time_ns;
     GlobalAdjustmentOptions adjustment = settings_.mapping.global_adjustment;
-    adjustment.bundle.interrupted = &interrupted_;
     if (closed) adjustment.bundle.iterations = settings_.places.iterations_after_loop;
-    adjusted = adjustGlobally(camera_, adjustment, settings_.mapping.local_adjustment, map);
+    adjusted = adjustGlobally(camera_, adjustment, settings_.mapping.local_adjustment, map, &interrupted_);
   }
   if (!closed && !adjusted) return correction;
   if (correction.loop) {

@@ -14,7 +14,9 @@ namespace edgeslam {
 class PlacesWorker {
  public:
   PlacesWorker(const Camera& camera, const Settings& settings)
-      : camera_(camera), settings_(settings), loop_closing_(camera, settings.loops) {}
+      : camera_(camera),
+        settings_(settings),
+        loop_closing_(camera, {settings.edges, settings.points.accuracy}, settings.loops) {}
 
   // Snapshots in the order of their numbers, not necessarily all.
   Correction work(const Snapshot& snapshot);

@@ -9,21 +9,10 @@ namespace edgeslam {
 
 FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
   if (unreadable) ++result_.unreadable_frames;
-  FrameRecord record;
-  record.index = frame.index;
-  record.time_ns = frame.time_ns;
-  record.state = frame.state;
-  record.reason = frame.reason;
-  record.has_live_pose = frame.has_pose;
-  record.live_world_T_camera = frame.world_T_camera;
-  record.standard_deviation = frame.world_covariance.diagonal().cwiseMax(0).cwiseSqrt().cast<float>();
-  record.tracked_points = frame.tracked_points;
-  record.mapped_points = frame.mapped_points;
-  record.times = frame.times;
-  if (frame.latency_ms > 0) record.latency_ms = static_cast<float>(frame.latency_ms);
+  FrameRecord& record = result_.frames.emplace_back();
+  static_cast<FrameResult&>(record) = frame;
   carried_.push_back({frame.reference, frame.reference_T_camera});
-  result_.frames.push_back(std::move(record));
-  return result_.frames.back();
+  return record;
 }
 
 void RunRecord::add(MappingReport report) {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "mapping/mapper.h"
-#include "pipeline/frame_result.h"
 #include "pipeline/messages.h"
 #include "pipeline/run_result.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 

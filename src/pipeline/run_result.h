@@ -11,43 +11,15 @@
 #include "geometry/camera.h"
 #include "geometry/pose.h"
 #include "pipeline/duration_statistics.h"
-#include "tracking/stage_times.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 
-enum class TrackingState {
-  initialising,  // no map yet; the reason says what is waited for
-  tracking,      // a measured pose
-  predicted,     // a pose from motion alone (blurred or unreadable frame): not good, not in trajectory.txt
-  recovered,     // a measured pose again after a track loss
-  relocalised,   // likewise, found again against the whole map
-  lost           // no pose
-};
-
-// "initialising", "tracking", ...
-const char* stateName(TrackingState state);
-
-// True where the pose was measured, not guessed.
-inline bool isGoodPose(TrackingState state) {
-  return state == TrackingState::tracking || state == TrackingState::recovered || state == TrackingState::relocalised;
-}
-
-struct FrameRecord {
-  std::int64_t index = 0;  // in the source
-  std::int64_t time_ns = 0;
-  TrackingState state = TrackingState::initialising;  // as given out at the time
-  std::string reason;                                 // why it is not `tracking`, or empty
-  bool has_live_pose = false;
-  Pose live_world_T_camera;  // as given out at the time
-  // Of the live pose: right-hand update [translation; rotation] (map units, rad); 0 where there is none.
-  Eigen::Matrix<float, 6, 1> standard_deviation = Eigen::Matrix<float, 6, 1>::Zero();
+// A frame's result as it was given out at the time, and what became of it.
+struct FrameRecord : FrameResult {
   bool has_final_pose = false;  // good, and carried by its keyframe's final pose
   Pose final_world_T_camera;
-  int tracked_points = 0;  // points followed in the image
-  int mapped_points = 0;   // of these with depth and used for the pose
   bool is_keyframe = false;
-  StageTimes times;
-  float latency_ms = -1;  // of a live run: from capture to the pose; negative: not known
 };
 
 struct KeyframeRecord {

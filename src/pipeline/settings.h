@@ -1,5 +1,5 @@
-// All that can be configured of the method, one struct a stage, each with defaults that work. The configuration file
-// (firmware_cfg/edgeslam.yaml) names every field.
+// All that can be configured of the method, one struct a stage, each with defaults that work. What the configuration
+// can change of it stands in configuration/configuration_keys.cpp; the rest are constants of the method.
 #pragma once
 
 #include "mapping/mapper.h"
@@ -39,6 +39,8 @@ struct RecordingSpace {
 };
 
 struct Settings {
+  EdgeOptions edges;          // how edges are found, in every image
+  PointChoiceOptions points;  // how points are chosen and measured, in every image
   TrackerOptions tracking;
   MapperOptions mapping;
   bool relocalisation_enabled = true;

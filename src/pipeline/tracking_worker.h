@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/frame_result.h"
 #include "pipeline/messages.h"
 #include "pipeline/settings.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 
@@ -46,12 +46,11 @@ class TrackingWorker {
 
   MappingMessage& nextMessage(FrameMessages& messages);
   void askWhere(std::int64_t time_ns, MappingMessage& message);
-  const FrameResult& makeResult(std::int64_t index, std::int64_t time_ns);
 
   bool relocalise_ = true;
   Tracker tracker_;
-  TrackingOutcome outcome_;
   FrameResult result_;
+  TrackedFrame for_mapping_;
   std::int64_t next_message_ = 0;
   std::int64_t asked_ = -1;             // number of the message with a lost frame that is not answered yet, or -1
   std::int64_t asked_frame_ = -1;       // its frame, or -1 where tracking went on by itself since

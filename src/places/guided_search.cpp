@@ -6,7 +6,6 @@
 #include <limits>
 #include <set>
 
-#include "edges/image_noise.h"
 #include "tracking/measurement_accuracy.h"
 
 namespace edgeslam {
@@ -43,17 +42,17 @@ VisiblePoints thinOut(const SearchPoints& points, const VisiblePoints& visible, 
   return chosen;
 }
 
-Track accuracyAt(const cv::Mat& grey, const PointChoiceOptions& options, const FoundPoint& found) {
+Track accuracyAt(const SearchedFrame& frame, const FoundPoint& found) {
   Track track;
   track.pixel = found.pixel;
   track.normal = found.normal;
-  updateAccuracy(grey, options, track);
+  updateAccuracy(frame.images.pyramid.levels[0], frame.accuracy, track);
   return track;
 }
 
 RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<PointId>& ids,
-                       const FrameImages& current, const EdgeMap& edges, const Pose& start,
-                       const GuidedSearchOptions& options, const Round& round) {
+                       const SearchedFrame& frame, const Pose& start, const GuidedSearchOptions& options,
+                       const Round& round) {
   MapSearchOptions search = options.search;
   search.radius = round.radius;
   search.coarsest_level = round.coarsest_level;
@@ -65,17 +64,15 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
   result.visible = static_cast<int>(visible.size());
   for (const VisiblePoint& candidate : visible) result.visible_corners += points[candidate.index].corner ? 1 : 0;
   const Pose camera_T_world = start.inverse();
-  const cv::Mat& grey = current.pyramid.levels[0];
-  const PointChoiceOptions accuracy = withNoiseOf(grey, options.accuracy);
   PoseObservations observations;
-  for (const FoundPoint& found : findVisiblePoints(points, visible, current, edges, search)) {
+  for (const FoundPoint& found : findVisiblePoints(points, visible, frame.images, frame.edges, search)) {
     const SearchPoint& point = points[found.index];
-    const Track seen = accuracyAt(grey, accuracy, found);
+    const Track seen = accuracyAt(frame, found);
     // A corner must be one in both images to count as one.
     const bool corner = point.corner && seen.corner;
     Measurement measurement = corner ? measurementOf(point, found) : measurementOf(seen);
     if (!corner) {
-      measurement.sigma_normal = accuracy.sigma_edge;
+      measurement.sigma_normal = frame.accuracy.options.sigma_edge;
       measurement.sigma_tangent = std::max<double>(seen.sigma_tangent, point.sigma_tangent);
     }
     result.matches.push_back({point.id, measurement, point.corner, keyframes[found.index]});
@@ -208,15 +205,14 @@ SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, co
 }
 
 ScreenedPose screenPose(const Camera& camera, const Map& map, const std::vector<PointId>& points,
-                        const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
-                        const GuidedSearchOptions& options) {
+                        const SearchedFrame& frame, const Pose& world_T_camera, const GuidedSearchOptions& options) {
   const Round round{options.screening_radius, 2, 6, options.screened_points};
-  const RoundResult result = searchOnce(camera, map, points, current, edges, world_T_camera, options, round);
+  const RoundResult result = searchOnce(camera, map, points, frame, world_T_camera, options, round);
   return {result.pose.world_T_camera, countEvidence(result)};
 }
 
 GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std::vector<PointId>& points,
-                                const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
+                                const SearchedFrame& frame, const Pose& world_T_camera,
                                 const GuidedSearchOptions& options) {
   const Round rounds[] = {{2 * options.search.radius, 1, 3, options.screened_points},
                           {options.search.radius, options.search.coarsest_level, 1, options.searched_points}};
@@ -224,7 +220,7 @@ GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std:
   RoundResult last;
   last.pose.world_T_camera = world_T_camera;
   for (const Round& round : rounds) {
-    last = searchOnce(camera, map, points, current, edges, last.pose.world_T_camera, options, round);
+    last = searchOnce(camera, map, points, frame, last.pose.world_T_camera, options, round);
     result.pose = last.pose;
     result.evidence = countEvidence(last);
     if (!last.pose.converged) {
@@ -246,7 +242,7 @@ GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std:
   const Pose& pose = last.pose.world_T_camera;
   const SearchPoints around = searchPoints(map, points, pose, keyframes);
   evidence.explained =
-      explainedShare(edges, visiblePoints(camera, around, pose, options.search), options.explained_edges);
+      explainedShare(frame.edges, visiblePoints(camera, around, pose, options.search), options.explained_edges);
   evidence.rotation_sigma_deg = largestSigma(last.pose.covariance.bottomRightCorner<3, 3>()) * 180 / M_PI;
   result.reason = reasonToRefuse(evidence, options);
   result.accepted = result.reason.empty();

@@ -8,7 +8,7 @@
 
 #include "adjustment/pose_adjustment.h"
 #include "edges/edge_detection.h"
-#include "edges/point_choice.h"
+#include "edges/point_accuracy.h"
 #include "map/map.h"
 #include "places/explained_edges.h"
 #include "tracking/map_search.h"
@@ -18,7 +18,6 @@ namespace edgeslam {
 struct GuidedSearchOptions {
   MapSearchOptions search;  // of the last round; the first ones search farther
   PoseOptions pose;
-  PointChoiceOptions accuracy;   // how the found points' accuracy is told
   int screened_points = 120;     // searched for in the first round ...
   int searched_points = 300;     // ... and in each later one, at most
   double screening_radius = 20;  // [px]
@@ -77,18 +76,24 @@ std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neigh
 SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
                           std::vector<KeyframeId>& keyframes);
 
+// A frame in which map points are searched for.
+struct SearchedFrame {
+  const FrameImages& images;
+  const EdgeMap& edges;
+  PointAccuracy accuracy;  // of what is measured in it
+};
+
 // A first look from a rough pose at some of the points: the pose adjusted to them and what speaks for it.
 struct ScreenedPose {
   Pose world_T_camera;
   PoseEvidence evidence;  // counts only
 };
 ScreenedPose screenPose(const Camera& camera, const Map& map, const std::vector<PointId>& points,
-                        const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
-                        const GuidedSearchOptions& options);
+                        const SearchedFrame& frame, const Pose& world_T_camera, const GuidedSearchOptions& options);
 
 // From a screened pose to the final one, or the reason to refuse it.
 GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std::vector<PointId>& points,
-                                const FrameImages& current, const EdgeMap& edges, const Pose& world_T_camera,
+                                const SearchedFrame& frame, const Pose& world_T_camera,
                                 const GuidedSearchOptions& options);
 
 }  // namespace edgeslam

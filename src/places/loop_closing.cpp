@@ -118,7 +118,7 @@ void LoopClosing::describeNew(const Map& map) {
     known.frame_index = keyframe.frame_index;
     if (keyframe.images) {
       const cv::Mat& grey = keyframe.images->pyramid.levels[0];
-      known.signature = edgeSignature(grey, detectEdges(grey, options_.edges));
+      known.signature = edgeSignature(grey, detectEdges(grey, reading_.edges));
     }
     known_.emplace(keyframe.id, std::move(known));
   }
@@ -152,7 +152,7 @@ JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCand
   judged.score = candidate.score;
   const std::uint64_t seed =
       options_.seed + static_cast<std::uint64_t>(current) * 1000003u + static_cast<std::uint64_t>(candidate.keyframe);
-  judged.verification = verifyLoop(camera_, map, current, candidate.keyframe, options_.verification, seed);
+  judged.verification = verifyLoop(camera_, reading_, map, current, candidate.keyframe, options_.verification, seed);
   judged.reason = judged.verification.reason;
   if (!judged.verification.accepted) return judged;
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "edges/edge_detection.h"
+#include "edges/image_reading.h"
 #include "places/edge_signature.h"
 #include "places/loop_correction.h"
 #include "places/loop_detection.h"
@@ -16,7 +16,6 @@ namespace edgeslam {
 
 struct LoopClosingOptions {
   bool enabled = true;
-  EdgeOptions edges;
   SignatureOptions signature;
   double thumbnail_weight =
       0.5;  // of the thumbnails' correlation in the score, the rest is the paper's; 0: the paper's alone
@@ -52,7 +51,9 @@ void refuseContradictions(const Map& map, KeyframeId current, std::vector<Judged
 
 class LoopClosing {
  public:
-  LoopClosing(const Camera& camera, const LoopClosingOptions& options) : camera_(camera), options_(options) {}
+  // `reading`: of the images of keyframes.
+  LoopClosing(const Camera& camera, const ImageReading& reading, const LoopClosingOptions& options)
+      : camera_(camera), reading_(reading), options_(options) {}
 
   // The map's latest keyframe, once for each, after the local adjustment. A map that was begun anew is told by the
   // frames of its keyframes. Verifies at most options.detection.most_candidates.
@@ -71,6 +72,7 @@ class LoopClosing {
   JudgedLoop judge(const Map& map, KeyframeId current, const LoopCandidate& candidate) const;
 
   Camera camera_;
+  ImageReading reading_;
   LoopClosingOptions options_;
   std::map<KeyframeId, Known> known_;
   KeyframeId last_loop_ = -1;  // keyframe at which the last loop was accepted

@@ -39,9 +39,10 @@ struct Located {
 
 class LoopSearch {
  public:
-  LoopSearch(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
-             const LoopSearchOptions& options)
+  LoopSearch(const Camera& camera, const ImageReading& reading, const Map& map, KeyframeId current,
+             KeyframeId candidate, const LoopSearchOptions& options)
       : camera_(camera),
+        reading_(reading),
         map_(map),
         candidate_(candidate),
         options_(options),
@@ -63,6 +64,7 @@ class LoopSearch {
                      std::vector<LoopVerification::Found>& found) const;
 
   const Camera& camera_;
+  const ImageReading& reading_;
   const Map& map_;
   KeyframeId candidate_;
   const LoopSearchOptions& options_;
@@ -96,10 +98,12 @@ std::vector<Pose> LoopSearch::starts(KeyframeId keyframe, const std::optional<Si
 std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector<Pose>& starts,
                                           std::string& reason) const {
   const Keyframe& here = map_.keyframes[keyframe];
-  const EdgeMap edges = detectEdges(here.images->pyramid.levels[0], options_.edges);
+  const cv::Mat& grey = here.images->pyramid.levels[0];
+  const EdgeMap edges = detectEdges(grey, reading_.edges);
+  const SearchedFrame frame{*here.images, edges, accuracyIn(grey, reading_.accuracy)};
   std::vector<ScreenedPose> screened;
   for (const Pose& start : starts) {
-    ScreenedPose look = screenPose(camera_, map_, points_, *here.images, edges, start, search_);
+    ScreenedPose look = screenPose(camera_, map_, points_, frame, start, search_);
     if (look.evidence.share() >= options_.screened_share) screened.push_back(std::move(look));
   }
   std::stable_sort(screened.begin(), screened.end(), [](const ScreenedPose& a, const ScreenedPose& b) {
@@ -110,7 +114,7 @@ std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector
   Located best;
   reason = "no pose shows the old side";
   for (const ScreenedPose& look : screened) {
-    GuidedSearchResult search = guidedSearch(camera_, map_, points_, *here.images, edges, look.world_T_camera, search_);
+    GuidedSearchResult search = guidedSearch(camera_, map_, points_, frame, look.world_T_camera, search_);
     const double shares = search.evidence.share() + search.evidence.explained;
     if (search.accepted && shares < options_.found_and_explained) {
       search.accepted = false;
@@ -224,11 +228,12 @@ ScaleEstimate estimateScale(const ScalePairs& pairs) {
   return estimate;
 }
 
-LoopVerification verifyLoopBySearch(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
-                                    const LoopVerification& descriptors, const LoopSearchOptions& options) {
+LoopVerification verifyLoopBySearch(const Camera& camera, const ImageReading& reading, const Map& map,
+                                    KeyframeId current, KeyframeId candidate, const LoopVerification& descriptors,
+                                    const LoopSearchOptions& options) {
   LoopVerification result = descriptors;
   result.accepted = false;
-  const LoopSearch search(camera, map, current, candidate, options);
+  const LoopSearch search(camera, reading, map, current, candidate, options);
   std::optional<Similarity> rough;
   if (descriptors.inliers >= options.fewest_rough_inliers) rough = descriptors.current_S_candidate;
   const std::optional<Located> here = search.locate(current, search.starts(current, rough), result.reason);

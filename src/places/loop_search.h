@@ -28,7 +28,8 @@ ScaleEstimate estimateScale(const ScalePairs& pairs);
 // `descriptors`: what they say, accepted or not: their similarity is tried as a start besides the thumbnails' turn, and
 // where accepted it is a witness. Accepted or not, the reason tells what was found. `inliers` are the old side's points
 // in agreement. Both keyframes must have images. Same input, same result.
-LoopVerification verifyLoopBySearch(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
-                                    const LoopVerification& descriptors, const LoopSearchOptions& options);
+LoopVerification verifyLoopBySearch(const Camera& camera, const ImageReading& reading, const Map& map,
+                                    KeyframeId current, KeyframeId candidate, const LoopVerification& descriptors,
+                                    const LoopSearchOptions& options);
 
 }  // namespace edgeslam

@@ -169,15 +169,15 @@ LoopVerification verifyByDescriptors(const Camera& camera, const Map& map, Keyfr
 
 }  // namespace
 
-LoopVerification verifyLoop(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
-                            const LoopVerificationOptions& options, std::uint64_t seed) {
+LoopVerification verifyLoop(const Camera& camera, const ImageReading& reading, const Map& map, KeyframeId current,
+                            KeyframeId candidate, const LoopVerificationOptions& options, std::uint64_t seed) {
   LoopVerification result;
   if (!map.keyframes[current].images || !map.keyframes[candidate].images) {
     result.reason = "a keyframe without images";
     return result;
   }
   const LoopVerification descriptors = verifyByDescriptors(camera, map, current, candidate, options, seed);
-  result = verifyLoopBySearch(camera, map, current, candidate, descriptors, options.search);
+  result = verifyLoopBySearch(camera, reading, map, current, candidate, descriptors, options.search);
   const double scale = result.current_S_candidate.scale;
   if (result.accepted && !(scale < options.largest_scale && scale > 1 / options.largest_scale)) {
     result.accepted = false;

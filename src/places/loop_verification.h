@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edges/edge_detection.h"
+#include "edges/image_reading.h"
 #include "places/guided_matching.h"
 #include "places/guided_search.h"
 #include "places/keyframe_matching.h"
@@ -26,7 +27,6 @@ inline GuidedSearchOptions boundsOfLoops() {
 // Of the guided search that every loop must pass (places/loop_search.h).
 struct LoopSearchOptions {
   GuidedSearchOptions search = boundsOfLoops();
-  EdgeOptions edges;
   double least_correlation = 0.3;     // of the thumbnails, for starts by their turn
   double screened_share = 0.25;       // of the points in view that must agree roughly at the first look
   double found_and_explained = 0.95;  // least sum of the shares of the points found and of the edges explained
@@ -83,8 +83,8 @@ struct LoopVerification {
 };
 
 // Same seed, same result.
-LoopVerification verifyLoop(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
-                            const LoopVerificationOptions& options, std::uint64_t seed);
+LoopVerification verifyLoop(const Camera& camera, const ImageReading& reading, const Map& map, KeyframeId current,
+                            KeyframeId candidate, const LoopVerificationOptions& options, std::uint64_t seed);
 
 // A point of the candidate's side, seen in the current image, and, where it is mapped there too, its counterpart.
 struct PlaceCorrespondence {

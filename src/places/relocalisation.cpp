@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "edges/image_noise.h"
 #include "geometry/resectioning.h"
 
 namespace edgeslam {
@@ -139,11 +138,10 @@ std::vector<Relocalisation::Start> Relocalisation::startsByTurning(const Map& ma
 
 std::vector<Relocalisation::Start> Relocalisation::startsByDescriptors(const Map& map,
                                                                        const std::vector<Candidate>& candidates,
-                                                                       const FrameImages& current,
-                                                                       const EdgeMap& edges) const {
-  const cv::Mat& grey = current.pyramid.levels[0];
+                                                                       const SearchedFrame& searched) const {
+  const cv::Mat& grey = searched.images.pyramid.levels[0];
   std::vector<Eigen::Vector2f> pixels;
-  for (const ChosenPoint& point : choosePoints(grey, edges, {}, withNoiseOf(grey, options_.points)))
+  for (const ChosenPoint& point : choosePoints(grey, searched.edges, {}, options_.points, searched.accuracy))
     pixels.push_back(point.pixel);
   std::vector<Start> starts;
   DescribedPoints frame;
@@ -161,9 +159,8 @@ std::vector<Relocalisation::Start> Relocalisation::startsByDescriptors(const Map
 
 // A first look from each start, then the best are followed up. The best of what is accepted is the result, unless
 // another pose rivals it.
-void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map, const FrameImages& current,
-                                const EdgeMap& edges, const std::optional<Reachable>& reachable,
-                                RelocalisationResult& result) const {
+void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map, const SearchedFrame& frame,
+                                const std::optional<Reachable>& reachable, RelocalisationResult& result) const {
   struct Screened {
     KeyframeId keyframe;
     std::vector<PointId> points;
@@ -174,7 +171,7 @@ void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
   for (const Start& start : starts) {
     if (!isReachable(reachable, start.world_T_camera, 2)) continue;  // it is a guess yet
     Screened look{start.keyframe, pointsAround(map, start.keyframe, options.neighbours), {}};
-    look.pose = screenPose(camera_, map, look.points, current, edges, start.world_T_camera, options);
+    look.pose = screenPose(camera_, map, look.points, frame, start.world_T_camera, options);
     if (look.pose.evidence.share() >= options_.screened_share) screened.push_back(std::move(look));
   }
   std::stable_sort(screened.begin(), screened.end(), [](const Screened& a, const Screened& b) {
@@ -189,8 +186,7 @@ void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
   for (const Screened& look : screened) {
     if (result.found && !different(look.pose.world_T_camera)) continue;
     if (followed_up++ == options_.refined_poses) break;
-    GuidedSearchResult search =
-        guidedSearch(camera_, map, look.points, current, edges, look.pose.world_T_camera, options);
+    GuidedSearchResult search = guidedSearch(camera_, map, look.points, frame, look.pose.world_T_camera, options);
     if (search.accepted && !isReachable(reachable, search.pose.world_T_camera, 1)) {
       search.accepted = false;
       search.reason = "what looks like it is out of reach";
@@ -224,9 +220,10 @@ RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImage
     return result;
   }
   result.reason = "from no keyframe does the map show in this frame";
-  searchFrom(startsByTurning(map, tried), map, current, edges, reachable, result);
+  const SearchedFrame frame{current, edges, accuracyIn(current.pyramid.levels[0], accuracy_)};
+  searchFrom(startsByTurning(map, tried), map, frame, reachable, result);
   if (result.evidence.visible > 0) return result;  // another start would lead to the same pose
-  searchFrom(startsByDescriptors(map, tried, current, edges), map, current, edges, reachable, result);
+  searchFrom(startsByDescriptors(map, tried, frame), map, frame, reachable, result);
   return result;
 }
 

@@ -1,5 +1,6 @@
 // P22: where track-loss recovery fails, the camera is found again against the whole map: keyframes that look like the
-// frame, a rough pose from each, a guided search from there.
+// frame, a rough pose from each, a guided search from there. It looks for a place, as loop detection does, but
+// mapping's thread does it: a lost robot does not wait behind an adjustment of the whole map.
 #pragma once
 
 #include <map>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "edges/point_choice.h"
 #include "places/guided_search.h"
 #include "places/keyframe_matching.h"
 #include "places/thumbnail.h"
@@ -17,7 +19,7 @@ struct RelocalisationOptions {
   GuidedSearchOptions guided_search;
   KeyframeMatchingOptions matching;
   // Of the frame, to be matched with the keyframes': descriptors say little of points along an edge.
-  PointChoiceOptions points{/*count=*/300, /*spacing=*/6, /*cell=*/40, /*corner_share=*/0.8};
+  PointSpread points{/*count=*/300, /*spacing=*/6, /*cell=*/40, /*corner_share=*/0.8};
   int described_points = 250;     // of a keyframe, corner-like ones first
   int candidates = 5;             // keyframes tried in one frame
   int matched_candidates = 2;     // of these, matched by descriptors too
@@ -59,7 +61,9 @@ struct RelocalisationResult {
 // Keeps what relocalisation needs of each keyframe.
 class Relocalisation {
  public:
-  Relocalisation(const Camera& camera, const RelocalisationOptions& options) : camera_(camera), options_(options) {}
+  // `accuracy`: of points measured in frames.
+  Relocalisation(const Camera& camera, const PointAccuracyOptions& accuracy, const RelocalisationOptions& options)
+      : camera_(camera), accuracy_(accuracy), options_(options) {}
 
   // A keyframe without images is passed over; one already known is taken anew.
   void addKeyframe(const Keyframe& keyframe);
@@ -91,14 +95,15 @@ class Relocalisation {
   std::vector<Candidate> candidates(const Map& map, const Thumbnail& thumbnail) const;
   std::vector<Start> startsByTurning(const Map& map, const std::vector<Candidate>& candidates) const;
   std::vector<Start> startsByDescriptors(const Map& map, const std::vector<Candidate>& candidates,
-                                         const FrameImages& current, const EdgeMap& edges) const;
-  void searchFrom(const std::vector<Start>& starts, const Map& map, const FrameImages& current, const EdgeMap& edges,
+                                         const SearchedFrame& frame) const;
+  void searchFrom(const std::vector<Start>& starts, const Map& map, const SearchedFrame& frame,
                   const std::optional<Reachable>& reachable, RelocalisationResult& result) const;
   std::vector<Candidate> differentPlaces(const Map& map, const std::vector<Candidate>& ranked, int of_place,
                                          int wanted) const;
   std::optional<Pose> poseByDescriptors(const Map& map, KeyframeId keyframe, const DescribedPoints& frame) const;
 
   Camera camera_;
+  PointAccuracyOptions accuracy_;
   RelocalisationOptions options_;
   std::map<KeyframeId, KnownKeyframe> keyframes_;
 };

@@ -55,8 +55,8 @@ void appendPose(std::string& row, bool present, const Pose& pose) {
 
 void appendStandardDeviations(std::string& row, const FrameRecord& frame) {
   for (int i = 0; i < 6; ++i) {
-    const double deviation = frame.standard_deviation[i];
-    row += "," + (frame.has_live_pose && deviation > 0 ? number("%.6g", deviation) : std::string());
+    const double deviation = standardDeviation(frame)[i];
+    row += "," + (frame.has_pose && deviation > 0 ? number("%.6g", deviation) : std::string());
   }
 }
 
@@ -84,7 +84,7 @@ std::string formatFrameTable(const RunResult& result) {
   for (const FrameRecord& frame : result.frames) {
     text += std::to_string(frame.index) + "," + secondsWithNanoseconds(frame.time_ns) + "," + stateName(frame.state) +
             "," + quoted(frame.reason);
-    appendPose(text, frame.has_live_pose, frame.live_world_T_camera);
+    appendPose(text, frame.has_pose, frame.world_T_camera);
     appendPose(text, frame.has_final_pose, frame.final_world_T_camera);
     appendStandardDeviations(text, frame);
     text += "," + std::to_string(frame.tracked_points) + "," + std::to_string(frame.mapped_points) +

@@ -128,8 +128,7 @@ Trajectory finalTrajectory(const RunResult& result) {
 Trajectory liveTrajectory(const RunResult& result) {
   Trajectory trajectory;
   for (const FrameRecord& frame : result.frames) {
-    if (frame.has_live_pose && isGoodPose(frame.state))
-      trajectory.push_back({frame.time_ns, frame.live_world_T_camera});
+    if (frame.has_pose && isGoodPose(frame.state)) trajectory.push_back({frame.time_ns, frame.world_T_camera});
   }
   return trajectory;
 }
@@ -155,7 +154,7 @@ RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& g
       if (!summary.first_pose_s) summary.first_pose_s = since_start;
     }
     if (summary.first_pose_s) ++frames_from_first_pose;
-    if (frame.has_live_pose && isGoodPose(frame.state)) {
+    if (frame.has_pose && isGoodPose(frame.state)) {
       ++summary.live_poses;
       if (!summary.first_live_pose_s) summary.first_live_pose_s = since_start;
     }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "pipeline/frame_result.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 

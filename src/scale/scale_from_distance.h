@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/frame_result.h"
 #include "scale/measured_pose.h"
 #include "scale/scale_options.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/frame_result.h"
 #include "scale/scale_from_camera_height.h"
 #include "scale/scale_from_odometry.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 

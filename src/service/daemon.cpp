@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "configuration/configuration_text.h"
 #include "drivers/cameras/open_camera.h"
 #include "drivers/lcm/start_check.h"
 #include "map/saved_map.h"

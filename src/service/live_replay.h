@@ -7,10 +7,10 @@
 
 #include "frames/frame_source.h"
 #include "map/map.h"
-#include "pipeline/frame_result.h"
 #include "pipeline/run_result.h"
 #include "pipeline/settings.h"
 #include "recording/recording_writer.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 

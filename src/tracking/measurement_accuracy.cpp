@@ -5,13 +5,14 @@
 
 namespace edgeslam {
 
-void updateAccuracy(const cv::Mat& grey, const PointChoiceOptions& options, Track& track) {
+void updateAccuracy(const cv::Mat& grey, const PointAccuracy& accuracy, Track& track) {
+  const PointAccuracyOptions& options = accuracy.options;
   const StructureTensor tensor = structureTensor(grey, track.pixel, options.tensor_window);
   track.normal = tensor.direction.dot(track.normal) >= 0 ? tensor.direction : Eigen::Vector2f(-tensor.direction);
-  track.corner = isCornerLike({tensor.l1, tensor.l2}, options);
+  track.corner = isCornerLike({tensor.l1, tensor.l2}, accuracy);
   track.sigma_normal = static_cast<float>(track.corner ? options.sigma_corner : options.sigma_edge);
   track.sigma_tangent =
-      std::min(1000.0f, track.sigma_normal * std::sqrt(tensor.l1 / informativeL2(tensor.l2, options)));
+      std::min(1000.0f, track.sigma_normal * std::sqrt(tensor.l1 / informativeL2(tensor.l2, accuracy)));
   if (!options.weigh_edges) track.sigma_tangent = track.sigma_normal;
 }
 

@@ -1,6 +1,7 @@
 // Configurations, with the file they include (base.yaml) and the calibration they name (camera.yaml), all three parted
 // by lines "====": a configuration that reads back the same after it was written, or messages.
 #include "configuration/configuration.h"
+#include "configuration/configuration_text.h"
 #include "fuzz_input.h"
 #include "map/map_check.h"
 

@@ -127,9 +127,9 @@ TEST_P(LoopbackPosesOf, AreThoseOfReplayingTheSameFramesToTheLastBit) {
     const auto found = again.find(state.frame);
     ASSERT_NE(found, again.end()) << state.frame;
     EXPECT_EQ(state.state, stateNumber(found->second.state)) << state.frame;
-    ASSERT_EQ(state.has_pose, found->second.has_live_pose) << state.frame;
+    ASSERT_EQ(state.has_pose, found->second.has_pose) << state.frame;
     if (!state.has_pose) continue;
-    ++(numbersOf(state) == numbersOf(found->second.live_world_T_camera) ? same : different);
+    ++(numbersOf(state) == numbersOf(found->second.world_T_camera) ? same : different);
   }
   EXPECT_EQ(different, 0);
 

@@ -116,7 +116,7 @@ TEST(Comparison, hostileTextStaysText) {
 TEST(Comparison, aRunWithoutPosesIsShownAllTheSame) {
   const TemporaryFolder folder;
   RunResult run = makeRun();
-  for (FrameRecord& frame : run.frames) frame.has_final_pose = frame.has_live_pose = false;
+  for (FrameRecord& frame : run.frames) frame.has_final_pose = frame.has_pose = false;
   const json data = compared(writeMadeRun(folder, "a", makeRun()), writeMadeRun(folder, "b", run));
   EXPECT_EQ(data["relation"], "none");
   EXPECT_TRUE(data["second"]["trajectory"]["times"].empty());

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "configuration/configuration.h"
+#include "configuration/configuration_text.h"
 #include "unit/files/temporary_folder.h"
 
 namespace edgeslam {

@@ -71,7 +71,7 @@ TEST(FoundAgain, TheFrameThatWasFoundHasAFinalPoseAndTheNextOneTellsHow) {
     ++told;
     const FrameRecord& found = result.frames.at(static_cast<std::size_t>(frame.index - Settings().view_delay_frames));
     EXPECT_EQ(found.state, TrackingState::lost) << found.index;
-    EXPECT_FALSE(found.has_live_pose);
+    EXPECT_FALSE(found.has_pose);
     EXPECT_TRUE(found.has_final_pose);
     EXPECT_TRUE(std::any_of(result.events.begin(), result.events.end(), [&](const std::string& event) {
       return event.rfind("frame " + std::to_string(found.index) + ": " + stateName(frame.state), 0) == 0;
@@ -88,8 +88,8 @@ TEST(FoundAgain, EveryPoseCalledGoodHasItsCovariance) {
   for (const FrameRecord& frame : run.result.frames) {
     if (!isGoodPose(frame.state)) continue;
     ++good;
-    EXPECT_TRUE(frame.has_live_pose);
-    for (int i = 0; i < 6; ++i) EXPECT_GT(frame.standard_deviation[i], 0) << frame.index;
+    EXPECT_TRUE(frame.has_pose);
+    for (int i = 0; i < 6; ++i) EXPECT_GT(standardDeviation(frame)[i], 0) << frame.index;
   }
   EXPECT_GT(good, 0);
 }

@@ -85,9 +85,9 @@ TEST(LockstepRun, TheSameFramesGiveTheSameRunToTheLastBit) {
     EXPECT_EQ(a.frames[i].state, b.frames[i].state);
     EXPECT_EQ(a.frames[i].reason, b.frames[i].reason);
     EXPECT_EQ(a.frames[i].has_final_pose, b.frames[i].has_final_pose);
-    EXPECT_EQ(a.frames[i].standard_deviation, b.frames[i].standard_deviation);
+    EXPECT_EQ(standardDeviation(a.frames[i]), standardDeviation(b.frames[i]));
     EXPECT_EQ(a.frames[i].mapped_points, b.frames[i].mapped_points);
-    expectSamePose(a.frames[i].live_world_T_camera, b.frames[i].live_world_T_camera);
+    expectSamePose(a.frames[i].world_T_camera, b.frames[i].world_T_camera);
     expectSamePose(a.frames[i].final_world_T_camera, b.frames[i].final_world_T_camera);
   }
   ASSERT_EQ(a.keyframes.size(), b.keyframes.size());
@@ -138,12 +138,12 @@ TEST(LockstepRun, WhatARunLeavesFitsTogether) {
     EXPECT_EQ(frame.index, static_cast<std::int64_t>(i));
     EXPECT_EQ(frame.time_ns, recording().sequence.time(static_cast<int>(i)));
     EXPECT_EQ(frame.state, live[i].state) << "what was given out stays as it was";
-    expectSamePose(frame.live_world_T_camera, live[i].live_world_T_camera);
+    expectSamePose(frame.world_T_camera, live[i].world_T_camera);
     EXPECT_EQ(frame.state == TrackingState::initialising, !frame.reason.empty()) << i << ": " << frame.reason;
-    EXPECT_EQ(frame.has_live_pose, frame.state != TrackingState::initialising);
-    if (frame.has_live_pose) {
+    EXPECT_EQ(frame.has_pose, frame.state != TrackingState::initialising);
+    if (frame.has_pose) {
       EXPECT_GT(frame.mapped_points, 20);
-      EXPECT_GT(frame.standard_deviation.minCoeff(), 0);
+      EXPECT_GT(standardDeviation(frame).minCoeff(), 0);
     }
     final_poses += frame.has_final_pose;
   }
@@ -182,17 +182,16 @@ TEST(LockstepRun, UnreadableFramesArePredictedAndCounted) {
     }
     EXPECT_EQ(frame.state, TrackingState::predicted) << i;
     EXPECT_EQ(frame.reason, "frame " + std::to_string(i) + " is cut off");
-    EXPECT_TRUE(frame.has_live_pose);
+    EXPECT_TRUE(frame.has_pose);
     EXPECT_FALSE(frame.has_final_pose) << "a guess is no good pose";
-    EXPECT_LT((frame.live_world_T_camera.translation -
-               whole.frames[static_cast<std::size_t>(i)].live_world_T_camera.translation)
+    EXPECT_LT((frame.world_T_camera.translation - whole.frames[static_cast<std::size_t>(i)].world_T_camera.translation)
                   .norm(),
               0.05);
     // Less is known of it than of the last measured one.
     const FrameRecord& before = result.frames[39];
     if (i == 41) {
-      EXPECT_GT(frame.standard_deviation[0], before.standard_deviation[0]);
-      EXPECT_GT(frame.standard_deviation[3], before.standard_deviation[3]);
+      EXPECT_GT(standardDeviation(frame)[0], standardDeviation(before)[0]);
+      EXPECT_GT(standardDeviation(frame)[3], standardDeviation(before)[3]);
     }
   }
 }
@@ -202,7 +201,7 @@ TEST(LockstepRun, UnreadableFramesBeforeTheMapAreNoPoses) {
   EXPECT_EQ(result.unreadable_frames, 4);
   for (const std::size_t i : {0, 1, 2, 5}) {
     EXPECT_EQ(result.frames[i].state, TrackingState::initialising);
-    EXPECT_FALSE(result.frames[i].has_live_pose);
+    EXPECT_FALSE(result.frames[i].has_pose);
     EXPECT_FALSE(result.frames[i].has_final_pose);
   }
   EXPECT_GE(firstTracked(result), 0) << "and the map starts all the same";
@@ -221,7 +220,7 @@ TEST(LockstepRun, ABlankImageMakesNoMapAndSaysWhy) {
         lockstep.process(i, recording().sequence.time(i), cv::Mat(240, 320, CV_8U, cv::Scalar(120)));
     EXPECT_EQ(frame.state, TrackingState::initialising);
     EXPECT_NE(frame.reason, "");
-    EXPECT_FALSE(frame.has_live_pose);
+    EXPECT_FALSE(frame.has_pose);
   }
   EXPECT_TRUE(lockstep.finish().keyframes.empty());
 }

@@ -51,9 +51,9 @@ inline RunResult makeRun() {
                   : i == made_lost_frame ? TrackingState::lost
                                          : TrackingState::tracking;
     if (initialising) frame.reason = "too little parallax, \"0.4\" of 1.5 degrees";
-    frame.has_live_pose = frame.has_final_pose = frame.state == TrackingState::tracking;
-    frame.live_world_T_camera = frame.final_world_T_camera = inWorld(truth[static_cast<std::size_t>(i)].world_T_camera);
-    frame.standard_deviation.setConstant(1e-2f);
+    frame.has_pose = frame.has_final_pose = frame.state == TrackingState::tracking;
+    frame.world_T_camera = frame.final_world_T_camera = inWorld(truth[static_cast<std::size_t>(i)].world_T_camera);
+    frame.world_covariance.diagonal().setConstant(1e-4);
     frame.tracked_points = 300 + i, frame.mapped_points = 200 + i;
     frame.is_keyframe = frame.has_final_pose && i % 20 == 10;
     frame.times.add(Stage::edges, 5);

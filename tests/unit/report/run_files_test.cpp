@@ -146,7 +146,7 @@ TEST_F(RunFiles, aRunThatNeverStartedIsWrittenToo) {
   RunResult run = makeRun();
   for (FrameRecord& frame : run.frames) {
     frame.state = TrackingState::initialising;
-    frame.has_live_pose = frame.has_final_pose = false;
+    frame.has_pose = frame.has_final_pose = false;
   }
   run.keyframes.clear();
   run.map_points.clear();

@@ -1,0 +1,28 @@
+// A frame as tracking follows it: its images and edges, the tracks in it and, once it is located, its pose.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "edges/edge_detection.h"
+#include "map/keyframe.h"
+#include "tracking/track.h"
+
+namespace edgeslam {
+
+struct FollowedFrame {
+  std::shared_ptr<const FrameImages> images;
+  std::shared_ptr<EdgeMap> edges;
+  std::vector<Track> tracks;  // ascending ids
+  Pose world_T_camera;
+  Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation], in the map as it is
+  int inlier_count = 0;                    // map points that agree with the pose
+  double outlier_share = 0;                // of the map points in view
+
+  // False before the first frame, and after forget().
+  bool isThere() const { return images != nullptr; }
+  // Its memory stays, for another frame.
+  void forget() { images.reset(); }
+};
+
+}  // namespace edgeslam

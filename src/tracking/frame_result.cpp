@@ -1,0 +1,41 @@
+#include "tracking/frame_result.h"
+
+namespace edgeslam {
+
+const char* stateName(TrackingState state) {
+  switch (state) {
+    case TrackingState::initialising:
+      return "initialising";
+    case TrackingState::tracking:
+      return "tracking";
+    case TrackingState::predicted:
+      return "predicted";
+    case TrackingState::recovered:
+      return "recovered";
+    case TrackingState::relocalised:
+      return "relocalised";
+    case TrackingState::lost:
+      return "lost";
+  }
+  return "unknown";
+}
+
+Eigen::Matrix<float, 6, 1> standardDeviation(const FrameResult& result) {
+  return result.world_covariance.diagonal().cwiseMax(0).cwiseSqrt().cast<float>();
+}
+
+void clear(FrameResult& result) {
+  result.index = result.time_ns = 0;
+  result.state = TrackingState::initialising;
+  result.reason.clear();
+  result.has_pose = false;
+  result.world_T_camera = result.reference_T_camera = Pose();
+  result.covariance.setZero();
+  result.world_covariance.setZero();
+  result.reference = -1;
+  result.tracked_points = result.mapped_points = 0;
+  result.times = StageTimes();
+  result.latency_ms = -1;
+}
+
+}  // namespace edgeslam

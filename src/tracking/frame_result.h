@@ -1,0 +1,54 @@
+// What a frame came to, as it is given out at the time: its state, its pose and how well that is known.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "map/keyframe.h"
+#include "tracking/stage_times.h"
+
+namespace edgeslam {
+
+enum class TrackingState {
+  initialising,  // no map yet; the reason says what is waited for
+  tracking,      // a measured pose
+  predicted,     // a pose from motion alone (blurred or unreadable frame): not good, not in trajectory.txt
+  recovered,     // a measured pose again after a track loss (P21)
+  relocalised,   // a measured pose again, found in the whole map (P22)
+  lost           // no pose
+};
+
+// "initialising", "tracking", ...
+const char* stateName(TrackingState state);
+
+// True where the pose was measured, not guessed.
+inline bool isGoodPose(TrackingState state) {
+  return state == TrackingState::tracking || state == TrackingState::recovered || state == TrackingState::relocalised;
+}
+
+struct FrameResult {
+  std::int64_t index = 0;  // in the source
+  std::int64_t time_ns = 0;
+  TrackingState state = TrackingState::initialising;
+  std::string reason;  // why it is not `tracking`, or empty
+  bool has_pose = false;
+  Pose world_T_camera;  // map units; measured, or from motion alone where the state says so
+  // Of the right-hand update [translation; rotation]: of the pose in the map as it is, and of the pose in the world, in
+  // which the map itself may have drifted since its first keyframe.
+  Matrix6d covariance = Matrix6d::Zero(), world_covariance = Matrix6d::Zero();
+  KeyframeId reference = -1;  // the keyframe that carries this frame's final pose, or -1
+  Pose reference_T_camera;
+  int tracked_points = 0;  // points followed in the image
+  int mapped_points = 0;   // map points that agree with the pose
+  StageTimes times;
+  double latency_ms = -1;  // of a live run: from the frame's handing over by capture to its pose; negative: not known
+};
+
+// Standard deviations of the pose in the world: right-hand update [translation; rotation] (map units, rad); 0 where
+// nothing is known of them.
+Eigen::Matrix<float, 6, 1> standardDeviation(const FrameResult& result);
+
+// As made anew, but with its memory.
+void clear(FrameResult& result);
+
+}  // namespace edgeslam

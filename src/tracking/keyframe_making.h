@@ -1,0 +1,62 @@
+// Keyframes (section 3.2, P8 to P12): when a frame becomes one, and the points that are chosen in it.
+#pragma once
+
+#include <vector>
+
+#include "edges/point_choice.h"
+#include "geometry/camera.h"
+#include "map/map_view.h"
+#include "tracking/followed_frame.h"
+#include "tracking/keyframe_selection.h"
+
+namespace edgeslam {
+
+class KeyframeMaking {
+ public:
+  // `spread`: of the points that are tracked.
+  KeyframeMaking(const Camera& camera, const KeyframeOptions& options, const PointSpread& spread);
+
+  // A map is there already: keyframes and points get the numbers after its own.
+  void goOnFrom(KeyframeId next_keyframe, PointId next_point);
+
+  // The frame's own points, as those of a map's first keyframe; what was tracked in it is forgotten.
+  void choosePointsOfFirst(FollowedFrame& frame, const PointAccuracy& accuracy);
+  // It started a map.
+  void startedMap() { next_keyframe_ = 1; }
+
+  // P8 to P12, for a frame that is located in `view`.
+  KeyframeDecision judge(const MapView& view, const FollowedFrame& frame) const;
+  // Tracks begin anew from this frame, and others are chosen beside them. Gives the keyframe's number.
+  KeyframeId make(FollowedFrame& frame, const PointAccuracy& accuracy);
+  // The number that a lost frame gets if it is recovered as a keyframe.
+  KeyframeId numberOfLost() { return next_keyframe_++; }
+  // Mapping has keyframes up to this one.
+  void seen(KeyframeId latest);
+
+  // After each frame that was located.
+  void follow(const FollowedFrame& frame);
+  // The next frame may become one, with fresh points; `last`: the one that was located last.
+  void askForOne(const FollowedFrame& last);
+  void forgetAverage() { average_tracks_ = 0; }
+
+  // Since the last keyframe.
+  int frames() const { return frames_; }
+
+ private:
+  void choosePointsIn(FollowedFrame& frame, KeyframeId keyframe, const PointAccuracy& accuracy);
+
+  Camera camera_;
+  KeyframeOptions options_;
+  PointSpread spread_;
+  PointChoiceWorkspace workspace_;
+  std::vector<Eigen::Vector2f> occupied_;
+  std::vector<ChosenPoint> chosen_;
+  PointId next_point_ = 0;
+  KeyframeId next_keyframe_ = 0;
+  std::int64_t time_ns_ = 0;   // of the last keyframe
+  int frames_ = 0;             // since then
+  int most_mapped_ = 0;        // likewise
+  double average_tracks_ = 0;  // running average over the frames
+};
+
+}  // namespace edgeslam

@@ -1,0 +1,34 @@
+// The camera's motion from frame to frame: constant velocity, but not for long.
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/pose.h"
+#include "geometry/uncertainty.h"
+
+namespace edgeslam {
+
+struct TimedCamera {
+  std::int64_t time_ns = 0;
+  Pose world_T_camera;
+};
+
+class MotionModel {
+ public:
+  // `before` and `now`: two frames that were located one after the other, in the same world.
+  void observe(const TimedCamera& before, const TimedCamera& now);
+  // Nothing is known of the motion: the camera is taken to stand.
+  void forget();
+
+  // world_T_camera at `time_ns`, after `last`. After a gap the camera has rather stopped than flown on.
+  Pose predict(const TimedCamera& last, std::int64_t time_ns) const;
+
+  // Covariance (right-hand update [translation; rotation]) of a predicted pose, `seconds` after one of `covariance`.
+  static Matrix6d predictedCovariance(const Matrix6d& covariance, double seconds);
+
+ private:
+  Pose before_T_now_;
+  std::int64_t interval_ns_ = 0;  // that the motion was observed over; 0: none was
+};
+
+}  // namespace edgeslam

@@ -1,0 +1,25 @@
+#include "tracking/pose_acceptance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace edgeslam {
+
+int fewestInliers(std::size_t in_view, const AcceptanceContext& context, const AcceptanceOptions& options) {
+  const auto visible = static_cast<double>(in_view), before = static_cast<double>(context.inliers_before);
+  double fewest = std::max(options.least_inlier_share * visible, options.least_points_share * before);
+  if (context.regains) {
+    const double most_of_them =
+        std::max(options.regain_inlier_share * visible, options.regain_fewest_points_share * before);
+    const double as_many_as_before = options.regain_points_share * before;
+    fewest = std::max(fewest, std::min(most_of_them, as_many_as_before));
+  }
+  return static_cast<int>(std::ceil(fewest));
+}
+
+bool isBelieved(const FramePose& pose, const AcceptanceContext& context, const AcceptanceOptions& options) {
+  return pose.result.inlier_count >= fewestInliers(pose.track_of_observation.size(), context, options) &&
+         largestDeviation(pose.result.covariance, context.scene_depth) < options.largest_deviation;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,35 @@
+// What is believed: a frame's pose counts as measured only where enough of the map agrees with it, and where what
+// agrees says enough.
+#pragma once
+
+#include <cstddef>
+
+#include "tracking/pose_estimation.h"
+
+namespace edgeslam {
+
+struct AcceptanceOptions {
+  double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed ...
+  double least_points_share = 0.15;  // ... nor with fewer than this share of the points of the pose before ...
+  double largest_deviation = 0.03;   // ... nor where it is less certain: share of the scene's depth, or angle [rad]
+  // The first pose after a loss or blur needs a good part of the points that the last good pose had ...
+  double regain_points_share = 0.7;
+  // ... or fewer of them, where these are most of the map points in view.
+  double regain_fewest_points_share = 0.3;
+  double regain_inlier_share = 0.6;
+};
+
+// What a pose is judged against.
+struct AcceptanceContext {
+  int inliers_before = 0;  // of the last frame that was located
+  bool regains = false;    // the frame before was blurred or lost
+  double scene_depth = 1;  // [map units]
+};
+
+// With fewer of the map points in view a pose is not believed.
+int fewestInliers(std::size_t in_view, const AcceptanceContext& context, const AcceptanceOptions& options);
+
+// Of a pose in a map that stands.
+bool isBelieved(const FramePose& pose, const AcceptanceContext& context, const AcceptanceOptions& options);
+
+}  // namespace edgeslam

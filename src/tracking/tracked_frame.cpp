@@ -1,0 +1,32 @@
+#include "tracking/tracked_frame.h"
+
+namespace edgeslam {
+
+void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole& role, TrackedFrame& description) {
+  description.frame_index = frame.images->frame_index;
+  description.time_ns = frame.images->time_ns;
+  description.world_T_camera = frame.world_T_camera;
+  description.kind = role.kind;
+  description.keyframe = role.keyframe;
+  description.reason = role.reason;
+  description.images = role.kind == FrameKind::start ? nullptr : frame.images;
+  description.observations.clear();
+  for (const Track& track : frame.tracks) {
+    const Measurement measurement = measurementOf(track);
+    description.observations.push_back(
+        {track.id, measurement, bearing(camera, measurement.pixel), track.corner, track.chain, track.order});
+  }
+}
+
+Track trackOf(const FoundAgain& found) {
+  Track track;
+  track.id = found.point;
+  track.pixel = track.last_keyframe_pixel = found.measurement.pixel.cast<float>();
+  track.normal = found.measurement.normal.cast<float>();
+  track.corner = found.corner;
+  track.sigma_normal = static_cast<float>(found.measurement.sigma_normal);
+  track.sigma_tangent = static_cast<float>(found.measurement.sigma_tangent);
+  return track;
+}
+
+}  // namespace edgeslam

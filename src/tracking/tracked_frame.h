@@ -1,0 +1,29 @@
+// What tracking hands to mapping, and what it gets back of a frame that was lost: frames and tracks as values.
+#pragma once
+
+#include "geometry/camera.h"
+#include "map/keyframe.h"
+#include "tracking/followed_frame.h"
+
+namespace edgeslam {
+
+// What a frame is for mapping.
+struct FrameRole {
+  FrameKind kind = FrameKind::start;
+  KeyframeId keyframe = -1;  // its number, or -1
+  const char* reason = "";   // which criterion made it a keyframe
+};
+
+// Writes over `description`, with its memory. A frame that only helps a start has no images in it.
+void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole& role, TrackedFrame& description);
+
+// A map point found again in a frame whose pose was lost.
+struct FoundAgain {
+  PointId point = 0;
+  Measurement measurement;
+  bool corner = false;
+};
+
+Track trackOf(const FoundAgain& found);
+
+}  // namespace edgeslam
