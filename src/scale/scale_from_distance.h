@@ -8,6 +8,7 @@
 #include "pipeline/frame_result.h"
 #include "scale/measured_pose.h"
 #include "scale/scale_options.h"
+#include "scale/scale_state.h"
 
 namespace edgeslam {
 

@@ -5,6 +5,7 @@
 #include <memory_resource>
 #include <vector>
 
+#include "edges/edge_detection.h"
 #include "flow/optical_flow.h"
 #include "geometry/camera.h"
 #include "map/map_view.h"

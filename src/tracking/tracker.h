@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "edges/blur_gate.h"
+#include "edges/point_choice.h"
 #include "flow/optical_flow.h"
 #include "geometry/camera.h"
 #include "map/map_view.h"
