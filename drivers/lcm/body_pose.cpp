@@ -20,15 +20,6 @@ bool isKnown(const Matrix6d& covariance) { return covariance.allFinite() && cova
 
 }  // namespace
 
-Matrix6d carriedCovariance(const Matrix6d& covariance, const Pose& a_T_b) {
-  const Eigen::Matrix3d b_R_a = a_T_b.rotation.conjugate().toRotationMatrix();
-  Matrix6d carried = Matrix6d::Zero();
-  carried.topLeftCorner<3, 3>() = b_R_a;
-  carried.topRightCorner<3, 3>() = -b_R_a * skew(a_T_b.translation);
-  carried.bottomRightCorner<3, 3>() = b_R_a;
-  return carried * covariance * carried.transpose();
-}
-
 Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot) {
   const Pose body_T_camera = cameraOnBody(robot);
   return body_T_camera * scaled(world_T_camera, robot.scale) * body_T_camera.inverse();

@@ -25,9 +25,6 @@ struct BodyMotion {
 constexpr double unknown_variance = 1e6;
 constexpr double longest_motion_s = 0.5;  // between two measured poses that give a motion
 
-// Covariance of the right-hand update of x_T_b = x_T_a * a_T_b, from that of x_T_a.
-Matrix6d carriedCovariance(const Matrix6d& covariance, const Pose& a_T_b);
-
 // local_T_body. While the scale is unknown, the camera's place on the robot (metres) cannot be told in map units: the
 // body then has its own orientation and the camera's position.
 Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot);

@@ -28,4 +28,14 @@ inline Matrix7d carriedUncertainty(const Matrix7d& of_a, const Pose& a_T_b) {
   return carry * of_a * carry.transpose();
 }
 
+// Covariance of the right-hand update of x_T_b = x_T_a * a_T_b, from that of x_T_a.
+inline Matrix6d carriedCovariance(const Matrix6d& covariance, const Pose& a_T_b) {
+  const Eigen::Matrix3d b_R_a = a_T_b.rotation.conjugate().toRotationMatrix();
+  Matrix6d carried = Matrix6d::Zero();
+  carried.topLeftCorner<3, 3>() = b_R_a;
+  carried.topRightCorner<3, 3>() = -b_R_a * skew(a_T_b.translation);
+  carried.bottomRightCorner<3, 3>() = b_R_a;
+  return carried * covariance * carried.transpose();
+}
+
 }  // namespace edgeslam

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/camera.h"
 #include "recording/recording_files.h"
 #include "recording/recording_layout.h"
 
