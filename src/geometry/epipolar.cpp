@@ -11,6 +11,8 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
+#include "geometry/median.h"
+
 namespace edgeslam {
 namespace {
 
@@ -217,10 +219,7 @@ double medianParallax(const Eigen::Quaterniond& rotation, const Bearings& first,
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (inliers[i]) angles.push_back(angleBetween(rotation * first[i], second[i]));
   }
-  if (angles.empty()) return 0;
-  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  return *middle;
+  return angles.empty() ? 0 : upperMedian(angles);
 }
 
 // A rotation explains a match where each bearing need turn by half the remaining angle, which makes it comparable to

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/epipolar.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -24,12 +25,6 @@ Eigen::Quaterniond kabsch(const std::vector<Eigen::Vector3d>& first, const std::
   return Eigen::Quaterniond(Eigen::Matrix3d(u * svd.matrixV().transpose())).normalized();
 }
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 RelativeRotation relativeRotation(const std::vector<Eigen::Vector3d>& first,
@@ -46,7 +41,7 @@ RelativeRotation relativeRotation(const std::vector<Eigen::Vector3d>& first,
       const Eigen::Vector3d rotated = result.rotation * first[i];
       errors[i] = std::atan2(rotated.cross(second[i]).norm(), rotated.dot(second[i]));
     }
-    result.median_error = medianOf(errors);
+    result.median_error = upperMedian(std::vector<double>(errors));
     largest_error = std::max(kTrim * result.median_error, 1e-12);
     if (round > 0 && rotationAngle(previous, result.rotation) < 1e-10) break;
   }

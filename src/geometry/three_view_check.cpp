@@ -6,12 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/angles.h"
 #include "geometry/epipolar.h"
 
 namespace edgeslam {
 namespace {
 
-const double kLeastCrossing = std::sin(2.0 * M_PI / 180);  // planes that cross at less are taken as parallel
+const double kLeastCrossing = std::sin(radians(2));  // planes that cross at less are taken as parallel
 
 struct EpipolarPlane {
   bool exists = false;      // false without a baseline, or for a pixel at the epipole

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "geometry/angles.h"
 #include "geometry/epipolar.h"
 #include "geometry/triangulation.h"
 
@@ -64,7 +65,7 @@ int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map,
     const TriangulationResult depth = triangulate(camera, in_host.bearing, others);
     const bool good =
         depth.converged && depth.inverse_depth > 0 && depth.sigma < options.largest_depth_sigma * depth.inverse_depth &&
-        depth.parallax * 180.0 / M_PI > options.least_parallax_deg && depth.largest_error < options.largest_error;
+        degrees(depth.parallax) > options.least_parallax_deg && depth.largest_error < options.largest_error;
     if (!good) {
       ++candidate;
       continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "flow/patch_alignment.h"
+#include "geometry/angles.h"
 #include "tracking/patch_refinement.h"
 
 namespace edgeslam {
@@ -29,7 +30,7 @@ KeyframeId bestSourceOfPatch(const Map& map, const MapPoint& point, const Eigen:
     const Eigen::Vector3d ray = position - candidate.world_T_camera.translation;
     const double cosine = ray.dot(wanted) / (ray.norm() * wanted.norm());
     const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
-    if (!(angle * 180.0 / M_PI < largest_angle_deg)) return;
+    if (!(degrees(angle) < largest_angle_deg)) return;
     const double cost = angle + 0.5 * std::abs(std::log(ray.norm() / wanted.norm()));
     if (cost < least) {
       least = cost;
@@ -125,7 +126,7 @@ GuidedMatches matchGuided(const Camera& camera, const Map& map, const PlaceView&
   if (!to.images) return found;
   const Pose to_T_from = upToScale(to_S_from);
   const Eigen::Vector3d centre = to_T_from.inverse().translation;
-  const double least_cosine = std::cos(options.largest_view_angle_deg * M_PI / 180.0);
+  const double least_cosine = std::cos(radians(options.largest_view_angle_deg));
   GuidedMatchingOptions wide = options;
   wide.partner_across += largest_move;
   for (std::size_t i = 0; i < from.points.size(); ++i) {

@@ -6,6 +6,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 
+#include "geometry/angles.h"
+
 namespace edgeslam {
 namespace {
 
@@ -78,7 +80,7 @@ DescribedPoints describePoints(const cv::Mat& grey, const std::vector<Eigen::Vec
   DescribedPoints described;
   const cv::Ptr<cv::ORB> orb =
       cv::ORB::create(500, kLevelScale, 8, kPatchSide / 2 + 1, 0, 2, cv::ORB::HARRIS_SCORE, kPatchSide);
-  const float angle = static_cast<float>(std::fmod(roll * 180.0 / M_PI + 720.0, 360.0));
+  const float angle = static_cast<float>(std::fmod(degrees(roll) + 720.0, 360.0));
   for (const int level : kLevels) {
     std::vector<cv::KeyPoint> keypoints;
     keypoints.reserve(pixels.size());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/angles.h"
+
 namespace edgeslam {
 namespace {
 
@@ -17,7 +19,7 @@ double barOf(const Map& map, KeyframeId current, const std::vector<double>& scor
     if (scores[static_cast<std::size_t>(k)] == kNoScore) continue;
     const double angle =
         rotationAngle(keyframeOf(map, current).world_T_camera.rotation, keyframeOf(map, k).world_T_camera.rotation);
-    if (angle * 180.0 / M_PI >= options.bar_rotation_deg) continue;
+    if (degrees(angle) >= options.bar_rotation_deg) continue;
     bar = std::min(bar, scores[static_cast<std::size_t>(k)]);
     ++counted;
   }

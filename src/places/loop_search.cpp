@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "geometry/median.h"
 #include "places/thumbnail.h"
 
 namespace edgeslam {
@@ -86,10 +87,9 @@ std::vector<Pose> LoopSearch::starts(KeyframeId keyframe, const std::optional<Si
     distances.push_back((worldPosition(map_, point->second) - there.world_T_camera.translation).norm());
   }
   if (distances.empty()) return poses;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
+  const double distance = upperMedian(distances);
   const Eigen::Quaterniond turn = rotationOf(camera_, match);
-  for (const double forward : {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45}) add({turn, {0, 0, forward * *middle}});
+  for (const double forward : {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45}) add({turn, {0, 0, forward * distance}});
   return poses;
 }
 
