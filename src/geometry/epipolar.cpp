@@ -12,6 +12,7 @@
 #include <random>
 
 #include "geometry/median.h"
+#include "geometry/relative_rotation.h"
 
 namespace edgeslam {
 namespace {

@@ -1,11 +1,12 @@
-// The rotation alone between two views, by Kabsch's method (1976) on bearings with trimming.
+#include "geometry/relative_rotation.h"
+
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "geometry/epipolar.h"
 #include "geometry/median.h"
+#include "geometry/pose.h"
 
 namespace edgeslam {
 namespace {

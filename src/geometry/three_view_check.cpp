@@ -1,13 +1,13 @@
-// P7: a correspondence in three views must lie, in the middle one, where the epipolar lines of the other two cross.
 // Worked out on planes through the middle camera's centre rather than on lines in its image, so that it holds for any
 // camera model: an epipolar line is such a plane, and two of them cross in a bearing.
+#include "geometry/three_view_check.h"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "geometry/angles.h"
-#include "geometry/epipolar.h"
 
 namespace edgeslam {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "adjustment/pose_adjustment.h"
 #include "geometry/epipolar.h"
+#include "geometry/relative_rotation.h"
 #include "geometry/triangulation.h"
 #include "mapping/initialisation.h"
 #include "mapping/points_seen_by_both.h"

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "adjustment/pose_adjustment.h"
-#include "geometry/epipolar.h"
+#include "geometry/relative_rotation.h"
 #include "mapping/points_seen_by_both.h"
 
 namespace edgeslam {

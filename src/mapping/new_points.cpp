@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "geometry/angles.h"
-#include "geometry/epipolar.h"
+#include "geometry/three_view_check.h"
 #include "geometry/triangulation.h"
 
 namespace edgeslam {
