@@ -1,8 +1,7 @@
-// The points that two tracked frames share, and medians of what they say.
+// The points that two tracked frames share.
 #pragma once
 
-#include <algorithm>
-#include <vector>
+#include <cstddef>
 
 #include "map/keyframe.h"
 
@@ -16,14 +15,6 @@ void forEachCommon(const TrackedFrame& first, const TrackedFrame& other, Visit v
     while (i < first.observations.size() && first.observations[i].point < other.observations[j].point) ++i;
     if (i < first.observations.size() && first.observations[i].point == other.observations[j].point) visit(i, j);
   }
-}
-
-// 0 of nothing.
-inline double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace edgeslam
