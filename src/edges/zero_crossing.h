@@ -8,8 +8,8 @@
 
 namespace edgeslam {
 
-constexpr int kLargestFitRadius = 7;          // [px]
-constexpr float kLeastSlopeAgreement = 0.7F;  // cosine between the plane's gradient and the normal
+constexpr int largest_fit_radius = 7;          // [px]
+constexpr float least_slope_agreement = 0.7F;  // cosine between the plane's gradient and the normal
 
 // Offset of the zero line of `dog` (CV_16S) from the centre of pixel (x, y) along its row (`along_row`) or column,
 // within

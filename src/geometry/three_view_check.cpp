@@ -12,7 +12,7 @@
 namespace edgeslam {
 namespace {
 
-const double kLeastCrossing = std::sin(radians(2));  // planes that cross at less are taken as parallel
+const double least_crossing = std::sin(radians(2));  // planes that cross at less are taken as parallel
 
 struct EpipolarPlane {
   bool exists = false;      // false without a baseline, or for a pixel at the epipole
@@ -70,7 +70,7 @@ double threeViewError(const Camera& camera, const Pose& world_T_first, const Pos
     return std::max(first_error, last_error);
   }
   Eigen::Vector3d crossing = first.normal.cross(last.normal);
-  if (crossing.norm() < kLeastCrossing) {
+  if (crossing.norm() < least_crossing) {
     return std::max(distanceToPlane(camera, first.normal, middle), distanceToPlane(camera, last.normal, middle));
   }
   if (crossing.dot(bearing(camera, middle.pixel)) < 0) crossing = -crossing;

@@ -10,13 +10,13 @@
 
 namespace edgeslam {
 
-// A blurred value of kBlurScale is one grey value; the largest, 255 * kBlurScale, fits a signed 16-bit integer.
-constexpr int kBlurScale = 128;
+// A blurred value of blur_scale is one grey value; the largest, 255 * blur_scale, fits a signed 16-bit integer.
+constexpr int blur_scale = 128;
 
 // Memory to be used for one image after the other.
 struct DifferenceOfGaussians {
-  cv::Mat narrow;  // CV_16U, the image blurred by the narrower Gaussian [grey / kBlurScale]
-  cv::Mat dog;     // CV_16S, that less the image blurred by the wider one [grey / kBlurScale]
+  cv::Mat narrow;  // CV_16U, the image blurred by the narrower Gaussian [grey / blur_scale]
+  cv::Mat dog;     // CV_16S, that less the image blurred by the wider one [grey / blur_scale]
 
   double sigma = 0;  // those of the kernels below
   double sigma_ratio = 0;

@@ -6,9 +6,9 @@
 
 namespace edgeslam {
 
-constexpr int kWeightBits = 16;  // all weights of a kernel, both sides, sum up to 1 << kWeightBits
+constexpr int weight_bits = 16;  // all weights of a kernel, both sides, sum up to 1 << weight_bits
 
-// weights[k] is that of the pixels k away from the centre; {1 << kWeightBits} is no blur at all.
+// weights[k] is that of the pixels k away from the centre; {1 << weight_bits} is no blur at all.
 struct FixedGaussian {
   std::vector<int32_t> weights;
 

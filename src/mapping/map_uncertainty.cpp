@@ -13,7 +13,7 @@ namespace edgeslam {
 namespace {
 
 // Of a keyframe that nothing ties to another: all of the map's extent and any direction.
-constexpr double kUnknown = 1;
+constexpr double unknown_variance = 1;
 
 struct SharedPoints {
   PoseObservations observations;
@@ -100,7 +100,7 @@ Matrix7d through(const Map& map, const Keyframe& keyframe, KeyframeId other, con
 }
 
 Matrix7d unknownFrom(const Map& map, const Keyframe& keyframe, KeyframeId other) {
-  return through(map, keyframe, other, kUnknown * Matrix7d::Identity());
+  return through(map, keyframe, other, unknown_variance * Matrix7d::Identity());
 }
 
 // By keyframe number: those that it shares most points with, and those that it is one of the best for.

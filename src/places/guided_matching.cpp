@@ -11,7 +11,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kBorder = 8;  // [px]
+constexpr double image_border = 8;  // [px]
 
 const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
@@ -117,7 +117,7 @@ bool findByPatch(const Camera& camera, const Map& map, const PlaceView& from, co
   const Eigen::Vector2d tangent(-predicted.normal.y(), predicted.normal.x());
   if (std::abs(predicted.normal.dot(moved)) > largest_move || std::abs(tangent.dot(moved)) > along_limit) return false;
   predicted.pixel = pixel.cast<double>();
-  return insideImage(camera, predicted.pixel, kBorder);
+  return insideImage(camera, predicted.pixel, image_border);
 }
 
 GuidedMatches matchGuided(const Camera& camera, const Map& map, const PlaceView& from, const PlaceView& to,
@@ -133,7 +133,7 @@ GuidedMatches matchGuided(const Camera& camera, const Map& map, const PlaceView&
     const PlacePoint& point = from.points[i];
     GuidedMatch match;
     if (!predictMeasurement(camera, to_T_from, point.position, point.measurement, match.measurement)) continue;
-    if (!insideImage(camera, match.measurement.pixel, kBorder)) continue;
+    if (!insideImage(camera, match.measurement.pixel, image_border)) continue;
     const Eigen::Vector3d ray = point.position - centre;
     if (ray.dot(point.position) < least_cosine * ray.norm() * point.position.norm()) continue;
     ++found.visible;

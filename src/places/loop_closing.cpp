@@ -78,7 +78,7 @@ LoopOutcome LoopClosing::addKeyframe(const Map& map) {
   if (!current) return outcome;
   if (last_loop_ >= 0 && outcome.current - last_loop_ <= options_.pause_keyframes) return outcome;
 
-  std::vector<double> scores(static_cast<std::size_t>(outcome.current), kNoScore);
+  std::vector<double> scores(static_cast<std::size_t>(outcome.current), no_score);
   for (const auto& [id, known] : known_) {
     if (id != outcome.current && known.signature && withinDrift(map, outcome.current, id))
       scores[static_cast<std::size_t>(id)] = score(*known.signature, *current);

@@ -27,9 +27,9 @@ struct LoopDetection {
 };
 
 // Score of a keyframe that cannot be compared: it has no images, or is culled.
-constexpr double kNoScore = -1;
+constexpr double no_score = -1;
 
-// `scores`: likeness of each earlier keyframe to `current`, in [0, 1], by keyframe number, or kNoScore where it
+// `scores`: likeness of each earlier keyframe to `current`, in [0, 1], by keyframe number, or no_score where it
 // cannot be compared or is culled. A keyframe is a
 // candidate where it is not recent, is not held together with the current one by map points (see mayCloseLoop), and it
 // and its neighbours in the order of the keyframes, `consecutive` in a row, are all over the bar; it is the best among

@@ -13,7 +13,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
+constexpr double degree = M_PI / 180;
 
 template <class... Values>
 std::string text(const char* format, Values... values) {
@@ -245,7 +245,7 @@ LoopVerification verifyLoopBySearch(const Camera& camera, const Map& map, Keyfra
     const double apart =
         (says.inverse().translation - found.inverse().translation).norm() / here->search.evidence.median_distance;
     const double scale = std::abs(std::log(current_S_candidate.scale / here->keyframe_S_candidate.scale));
-    return turn > options.witness_turn_deg * kDegree || apart > options.witness_distance ||
+    return turn > options.witness_turn_deg * degree || apart > options.witness_distance ||
            scale > options.witness_scale;
   };
   int witnesses = 0;
