@@ -22,23 +22,23 @@ struct DifferenceOfGaussians {
   double sigma_ratio = 0;
   FixedGaussian to_narrow;
   FixedGaussian to_wide;  // from the narrower blur
-  // Of one row: the pixels above each other around it, and their sums; the vectors' in two parts.
+  // For one row of the image: the rows of pixels around it, and the sums over them; the vectors' in two parts.
   std::vector<const uint8_t*> rows;
   std::vector<int16_t> upper;
   std::vector<int16_t> lower;
   std::vector<uint64_t> sums;
 };
 
-// Of `grey` (CV_8U) with Gaussians of standard deviation `sigma` [px] and `sigma_ratio` >= 1 times that; beyond the
-// image its outermost pixels go on. Allocates where `result` was not used for an image of this size with these
-// Gaussians.
+// Blurs `grey` (CV_8U) by Gaussians of standard deviation `sigma` >= 0 [px] and `sigma_ratio` >= 1 times that, and
+// takes the difference; beyond the image its outermost pixels go on. Allocates where `result` was not used for an image
+// of this size with these Gaussians.
 void differenceOfGaussians(const cv::Mat& grey, double sigma, double sigma_ratio, DifferenceOfGaussians& result);
 
-// The same, one pixel after the other.
+// What differenceOfGaussians gives, one pixel after the other.
 void differenceOfGaussiansReference(const cv::Mat& grey, double sigma, double sigma_ratio,
                                     DifferenceOfGaussians& result);
 
-// Shapes the memory: what both of them do first.
+// Shapes the memory of `result`: what differenceOfGaussians and its reference do first.
 void prepareDifferenceOfGaussians(const cv::Size& size, double sigma, double sigma_ratio,
                                   DifferenceOfGaussians& result);
 

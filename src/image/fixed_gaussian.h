@@ -22,8 +22,8 @@ struct FixedGaussian {
   int radius() const { return static_cast<int>(weights.size()) - 1; }  // [px]
 };
 
-// Of standard deviation `sigma` >= 0 [px], cut off where it falls below 1.5 % of its height. What rounding takes from
-// one weight the next one nearer to the centre is given.
+// The Gaussian of standard deviation `sigma` >= 0 [px], cut off where it falls below 1.5 % of its height. What rounding
+// takes from one weight the next one nearer to the centre is given.
 FixedGaussian fixedGaussian(double sigma);
 
 }  // namespace edgeslam
