@@ -85,7 +85,7 @@ std::array<EdgeSignaturePart, signature_parts> describeParts(const cv::Mat& grey
 
 // Small, blurred, and with the slow changes of brightness taken out, so that exposure and vignetting do not count.
 cv::Mat makeThumbnail(const cv::Mat& grey) {
-  const cv::Size size(thumbnail_width, thumbnail_height);
+  const cv::Size size(signature_thumbnail_width, signature_thumbnail_height);
   cv::Mat small, real, slow, fine;
   cv::resize(grey, small, size, 0, 0, cv::INTER_AREA);
   small.convertTo(real, CV_32F);
@@ -168,7 +168,7 @@ double thumbnailScore(const EdgeSignature& a, const EdgeSignature& b, int larges
   double best = -1;
   for (int y = -largest_shift; y <= largest_shift; ++y) {
     for (int x = -largest_shift; x <= largest_shift; ++x) {
-      const cv::Size overlap(thumbnail_width - std::abs(x), thumbnail_height - std::abs(y));
+      const cv::Size overlap(signature_thumbnail_width - std::abs(x), signature_thumbnail_height - std::abs(y));
       const cv::Mat of_a = a.thumbnail(cv::Rect(cv::Point(std::max(0, x), std::max(0, y)), overlap));
       const cv::Mat of_b = b.thumbnail(cv::Rect(cv::Point(std::max(0, -x), std::max(0, -y)), overlap));
       const double energy_a = of_a.dot(of_a), energy_b = of_b.dot(of_b);
