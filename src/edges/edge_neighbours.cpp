@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -202,10 +203,12 @@ HWY_EXPORT(keepMutualByVectors);
 
 void chooseNeighbours(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
                       std::vector<int>& behind) {
+  assert(index.type() == CV_32S && index.isContinuous());
   HWY_DYNAMIC_DISPATCH(chooseByVectors)(points, index, ahead, behind);
 }
 
 void keepMutual(std::vector<int>& ahead, std::vector<int>& behind) {
+  assert(ahead.size() == behind.size());
   HWY_DYNAMIC_DISPATCH(keepMutualByVectors)(ahead, behind);
 }
 

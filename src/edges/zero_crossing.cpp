@@ -1,6 +1,7 @@
 #include "edges/zero_crossing.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -51,6 +52,7 @@ bool isEdgeLikeWithin(const cv::Mat& dog, int x, int y, const Eigen::Vector2f& n
 }  // namespace
 
 float offsetOfZero(const cv::Mat& dog, int x, int y, bool along_row) {
+  assert(dog.type() == CV_16S && x >= 1 && y >= 1 && x < dog.cols - 1 && y < dog.rows - 1);
   const auto across = static_cast<std::ptrdiff_t>(along_row ? 1 : dog.step1());
   const auto along = static_cast<std::ptrdiff_t>(along_row ? dog.step1() : 1);
   const int16_t* centre = dog.ptr<int16_t>(y) + x;
@@ -72,6 +74,7 @@ float offsetOfZero(const cv::Mat& dog, int x, int y, bool along_row) {
 }
 
 bool isEdgeLike(const cv::Mat& dog, int x, int y, const Eigen::Vector2f& normal, int radius, double sign_balance) {
+  assert(dog.type() == CV_16S && x >= radius && y >= radius && x < dog.cols - radius && y < dog.rows - radius);
   switch (radius) {
     case 1:
       return isEdgeLikeWithin<1>(dog, x, y, normal, sign_balance);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -36,6 +37,7 @@ void blurRow(const cv::Mat& image, uint64_t scale, const FixedGaussian& gaussian
 
 void prepareDifferenceOfGaussians(const cv::Size& size, double sigma, double sigma_ratio,
                                   DifferenceOfGaussians& result) {
+  assert(sigma >= 0 && sigma_ratio >= 1);
   if (sigma != result.sigma || sigma_ratio != result.sigma_ratio) {
     result.sigma = sigma;
     result.sigma_ratio = sigma_ratio;

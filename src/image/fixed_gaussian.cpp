@@ -1,6 +1,7 @@
 #include "image/fixed_gaussian.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -34,6 +35,7 @@ FixedGaussian withPairs(std::vector<int32_t> weights) {
 }  // namespace
 
 FixedGaussian fixedGaussian(double sigma) {
+  assert(sigma >= 0);
   constexpr int32_t one = 1 << weight_bits;
   if (sigma < least_sigma) return withPairs({one});
   const int radius = std::max(1, static_cast<int>(std::lround(2.9 * sigma)));

@@ -1,5 +1,6 @@
 #include "image/gradient_products.h"
 
+#include <cassert>
 #include <cstddef>
 
 #undef HWY_TARGET_INCLUDE
@@ -90,6 +91,7 @@ namespace edgeslam {
 HWY_EXPORT(sumVectors);
 
 GradientProducts gradientProducts(const cv::Mat& grey, const cv::Rect& window) {
+  assert(grey.type() == CV_8U && (window & cv::Rect({}, grey.size())) == window);
   return HWY_DYNAMIC_DISPATCH(sumVectors)(grey, window);
 }
 

@@ -1,5 +1,6 @@
 #include "mapping/initial_frames.h"
 
+#include <cassert>
 #include <utility>
 
 #include "mapping/points_seen_by_both.h"
@@ -20,6 +21,7 @@ void addFrame(InitialFrames& frames, const TrackedFrame& frame) {
 }
 
 std::vector<std::size_t> spreadFrames(const InitialFrames& frames, int count) {
+  assert(count >= 1);
   std::vector<std::size_t> spread;
   const auto parts = static_cast<std::size_t>(count);
   for (std::size_t k = 1; k <= parts; ++k) {

@@ -1,6 +1,7 @@
 #include "mapping/initial_judgement.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -32,6 +33,7 @@ double displacementLessRotation(const Camera& camera, const InitialFrames& frame
 InitialEvidence judgeInitialStructure(const InitialFrames& frames, const InitialStructure& structure,
                                       const InitialisationOptions& options) {
   constexpr double degrees_a_radian = 180.0 / M_PI;
+  assert(!structure.first_T_camera.empty());
   InitialEvidence evidence;
   std::vector<QualityPoint> quality_points;
   std::vector<double> angles_deg;

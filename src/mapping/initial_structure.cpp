@@ -1,6 +1,7 @@
 #include "mapping/initial_structure.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "adjustment/bundle_adjustment.h"
@@ -65,6 +66,8 @@ double boundedError(const Camera& camera, const BundleProblem& adjusted,
 
 std::optional<InitialStructure> adjustInitialStructure(const Camera& camera, const InitialFrames& frames,
                                                        InitialStart start, const InitialisationOptions& options) {
+  assert(start.first_T_camera.size() == start.frames.size());
+  assert(start.inverse_depths.size() == frames.first.observations.size());
   BundleProblem problem = bundleProblem(frames, start, options.prior_sigma);
   BundleResult result = adjustBundle(camera, problem, options.bundle);
   if (!result.usable) return std::nullopt;
@@ -92,6 +95,7 @@ std::optional<InitialStructure> adjustInitialStructure(const Camera& camera, con
 std::optional<Pose> locateAgainst(const Camera& camera, const TrackedFrame& first,
                                   const std::vector<double>& inverse_depths, const TrackedFrame& frame,
                                   const Pose& near) {
+  assert(inverse_depths.size() == first.observations.size());
   PoseObservations observations;
   forEachCommon(first, frame, [&](std::size_t i, std::size_t j) {
     if (inverse_depths[i] <= 0) return;

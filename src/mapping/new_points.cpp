@@ -1,5 +1,6 @@
 #include "mapping/new_points.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "geometry/angles.h"
@@ -30,6 +31,7 @@ bool passesThreeViews(const Camera& camera, const Map& map, PointId id, const st
 }  // namespace
 
 void associate(Map& map, Candidates& candidates) {
+  assert(!map.keyframes.empty());
   const Keyframe& keyframe = map.keyframes.back();
   for (const PointObservation& observation : keyframe.observations) {
     const auto point = map.points.find(observation.point);
@@ -42,6 +44,7 @@ void associate(Map& map, Candidates& candidates) {
 }
 
 int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map, Candidates& candidates) {
+  assert(!map.keyframes.empty());
   int added = 0;
   const KeyframeId latest = map.keyframes.back().id;
   for (auto candidate = candidates.begin(); candidate != candidates.end();) {

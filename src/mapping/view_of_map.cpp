@@ -1,6 +1,7 @@
 #include "mapping/view_of_map.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "geometry/angles.h"
@@ -62,6 +63,7 @@ void writeSource(const Map& map, const MapPoint& point, ViewPoint& view_point) {
 }  // namespace
 
 MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options) {
+  assert(map.keyframes.contains(centre));
   MapView view;
   for (const Keyframe& keyframe : map.keyframes) {
     view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr, keyframe.uncertainty});
