@@ -7,7 +7,7 @@ namespace edgeslam {
 namespace {
 
 // Depths with less information than this are damped as if they had it.
-constexpr double kLeastInformation = 1e-6;
+constexpr double least_information = 1e-6;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -156,7 +156,7 @@ class Linearizer {
     eliminated.inverse_information = 0;
     if (!point.free || !(equations_.information > 0)) return;
     eliminated.inverse_information =
-        1 / (equations_.information + damping_ * std::max(equations_.information, kLeastInformation));
+        1 / (equations_.information + damping_ * std::max(equations_.information, least_information));
     const int* block = structure_.blocks.data() + point.first_block;
     for (std::size_t row = 0; row < equations_.mixed.size(); ++row) {
       const Vector6d scaled = eliminated.inverse_information * equations_.mixed[row];

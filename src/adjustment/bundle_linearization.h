@@ -41,7 +41,7 @@ struct BundleLinearization {
   Eigen::VectorXd gradient;         // reduced, 6 an unknown
   Eigen::VectorXd camera_gradient;  // before the depths were eliminated
   std::vector<EliminatedPoint> points;
-  // Of each observation: how depth and camera motion mix, d^2 cost / (d sight d inverse depth).
+  // How depth and camera motion mix, for each observation: d^2 cost / (d sight d inverse depth).
   std::vector<Eigen::Vector3d> mixed;
 };
 

@@ -91,43 +91,43 @@ bool solveDamped(const NormalEquations& equations, double damping, Vector6d& ste
 // Levenberg's minimisation with the weights renewed at every step. While far from the solution Huber's threshold is
 // wide, so that a prediction several pixels off does not make every observation an outlier.
 bool minimize(const Camera& camera, const PreparedObservations& observations, const PoseOptions& options, Pose& pose) {
-  constexpr int kWideIterations = 3;
-  constexpr double kWideFactor = 5;
-  constexpr double kLeastDamping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
-  constexpr double kMostDamping = 1e2;
+  constexpr int wide_iterations = 3;
+  constexpr double wide_factor = 5;
+  constexpr double least_damping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
+  constexpr double most_damping = 1e2;
   // A point behind the camera costs what an error of this whitened norm does; so does anything worse, without pulling.
-  constexpr double kBehindNorm = 1e4;
+  constexpr double norm_behind_camera = 1e4;
 
-  double huber = options.huber * kWideFactor;
-  double damping = kLeastDamping;
-  NormalEquations equations = linearize(camera, pose, observations, huber, kBehindNorm);
+  double huber = options.huber * wide_factor;
+  double damping = least_damping;
+  NormalEquations equations = linearize(camera, pose, observations, huber, norm_behind_camera);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    if (iteration == kWideIterations) {
+    if (iteration == wide_iterations) {
       huber = options.huber;
-      equations = linearize(camera, pose, observations, huber, kBehindNorm);
+      equations = linearize(camera, pose, observations, huber, norm_behind_camera);
     }
     bool accepted = false, small = false;
-    while (!accepted && damping <= kMostDamping) {
+    while (!accepted && damping <= most_damping) {
       Vector6d step;
       if (!solveDamped(equations, damping, step)) return false;
       // In units of the pose's own standard deviation, so free of scale.
       small = step.dot(equations.information * step) < 1e-8;
       const Pose candidate = retract(pose, step);
-      const NormalEquations at_candidate = linearize(camera, candidate, observations, huber, kBehindNorm);
+      const NormalEquations at_candidate = linearize(camera, candidate, observations, huber, norm_behind_camera);
       accepted = at_candidate.cost <= equations.cost;
       if (accepted) {
         pose = candidate;
         equations = at_candidate;
-        damping = std::max(kLeastDamping, 0.1 * damping);
+        damping = std::max(least_damping, 0.1 * damping);
       } else {
         if (small) break;
         damping = damping * 30;
       }
     }
     if (small || !accepted) {
-      if (iteration >= kWideIterations) break;
-      iteration = kWideIterations - 1;  // done with the wide threshold: on to the narrow one
-      damping = kLeastDamping;
+      if (iteration >= wide_iterations) break;
+      iteration = wide_iterations - 1;  // done with the wide threshold: on to the narrow one
+      damping = least_damping;
     }
   }
   return pose.rotation.coeffs().allFinite() && pose.translation.allFinite();

@@ -47,8 +47,8 @@ struct PoseResult {
   // False: too few observations or inliers, or the normal equations are singular. The pose is the start's then.
   bool converged = false;
   Pose world_T_camera;
-  // Of the right-hand update [translation; rotation]: inverse of the inliers' robust information, scaled up by the
-  // residuals where these exceed what the sigmas say, never down. A direction that nothing measures has a large
+  // Covariance of the right-hand update [translation; rotation]: inverse of the inliers' robust information, scaled up
+  // by the residuals where these exceed what the sigmas say, never down. A direction that nothing measures has a large
   // variance.
   Matrix6d covariance = Matrix6d::Zero();
   std::pmr::vector<char> inliers;  // one an observation

@@ -7,7 +7,7 @@ namespace edgeslam {
 namespace {
 
 // Entries of the diagonal less than this are damped as if they were this.
-constexpr double kLeastInformation = 1e-6;
+constexpr double least_information = 1e-6;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -66,7 +66,7 @@ bool ReducedSolver::solve(const BundleStructure& structure, const BundleState& s
     Matrix6d own = linearization.diagonal[at(place.row)];
     toStepsOfColumn(levers_[at(place.row)], own);
     toStepsOfRow(levers_[at(place.row)], own);
-    blocks_[b].diagonal() += damping * own.diagonal().cwiseMax(kLeastInformation);
+    blocks_[b].diagonal() += damping * own.diagonal().cwiseMax(least_information);
   }
   if (!(structure.dense ? solveDense(structure, step.changes) : (fillSparse(structure), solveSparse(step.changes))))
     return false;

@@ -28,8 +28,8 @@ inline CameraFrame cameraFrame(const Pose& world_T_camera) {
 // model, within 120 degrees for the fisheye. False for points at the centre and for NaN.
 inline bool inFront(const Camera& camera, const Eigen::Vector3d& point) {
   if (camera.model == CameraModel::kannala_brandt) return point.z() > -0.5 * point.norm();
-  constexpr double kLeastCosine = 0.02;
-  return point.z() > 0 && point.z() * point.z() > kLeastCosine * kLeastCosine * point.squaredNorm();
+  constexpr double least_cosine = 0.02;
+  return point.z() > 0 && point.z() * point.z() > least_cosine * least_cosine * point.squaredNorm();
 }
 
 // A pixel and what whitens errors of it.

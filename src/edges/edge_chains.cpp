@@ -7,7 +7,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr int kTaken = kNotNamed;  // in place of the neighbour behind: the point is in a chain, or in none at all
+constexpr int taken = not_named;  // in place of the neighbour behind: the point is in a chain, or in none at all
 
 // Appends the chain that starts with the point `start` to `edges`.
 void takeChain(size_t start, int shortest_chain, EdgeWorkspace& workspace, EdgeMap& edges) {
@@ -22,9 +22,9 @@ void takeChain(size_t start, int shortest_chain, EdgeWorkspace& workspace, EdgeM
     const auto here = static_cast<int>(edges.points.size());
     entryOf(source) = here;
     edges.points.push_back({source.pixel, source.normal, source.gradient, edges.chain_count, here - 1, here + 1});
-    workspace.behind[static_cast<size_t>(at)] = kTaken;
+    workspace.behind[static_cast<size_t>(at)] = taken;
     at = workspace.ahead[static_cast<size_t>(at)];
-  } while (at >= 0 && workspace.behind[static_cast<size_t>(at)] != kTaken);
+  } while (at >= 0 && workspace.behind[static_cast<size_t>(at)] != taken);
   const size_t end = edges.points.size();
   if (static_cast<int>(end - first) < shortest_chain) {
     at = static_cast<int>(start);

@@ -20,7 +20,7 @@ EdgeMap makeEdgeMap(const cv::Size& size) {
 void detectEdges(const cv::Mat& grey, const EdgeOptions& options, EdgeWorkspace& workspace, EdgeMap& edges) {
   CV_Assert(grey.empty() || grey.type() == CV_8U);
   CV_Assert(options.sigma > 0 && options.sigma_ratio > 1 && options.plane_fit_radius >= 1 &&
-            options.plane_fit_radius <= kLargestFitRadius);
+            options.plane_fit_radius <= largest_fit_radius);
   if (grey.empty()) {
     edges = {};
     return;

@@ -44,7 +44,7 @@ EdgeMap makeEdgeMap(const cv::Size& size);
 // size, or `edges` has not the memory of makeEdgeMap.
 void detectEdges(const cv::Mat& grey, const EdgeOptions& options, EdgeWorkspace& workspace, EdgeMap& edges);
 
-// The same in memory of its own.
+// The edges of `grey` (CV_8U) in memory of their own.
 EdgeMap detectEdges(const cv::Mat& grey, const EdgeOptions& options);
 
 // Index of the edge point nearest to `pixel` within `radius` [px] whose normal agrees (dot product at least

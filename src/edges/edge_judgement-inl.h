@@ -28,8 +28,8 @@ using Integers = hn::RebindToSigned<Floats>;
 using FloatVector = hn::Vec<Floats>;
 using IntegerVector = hn::Vec<Integers>;
 
-constexpr size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
-constexpr size_t kSummands = 4;
+constexpr size_t most_lanes = HWY_MAX_BYTES / sizeof(float);
+constexpr size_t summand_count = 4;
 
 #if HWY_ARCH_ARM_V7
 
@@ -37,7 +37,7 @@ constexpr size_t kSummands = 4;
 template <class Operation>
 HWY_INLINE FloatVector laneByLane(FloatVector a, FloatVector b, const Operation& operation) {
   const Floats d;
-  HWY_ALIGN float first[kMostLanes], second[kMostLanes];
+  HWY_ALIGN float first[most_lanes], second[most_lanes];
   hn::Store(a, d, first);
   hn::Store(b, d, second);
   for (size_t i = 0; i < hn::Lanes(d); ++i) first[i] = operation(first[i], second[i]);
@@ -62,7 +62,7 @@ HWY_INLINE FloatVector root(FloatVector a) { return hn::Sqrt(a); }
 
 IntegerVector sumOfSummands(const std::vector<int32_t>& summands, size_t i) {
   IntegerVector a, b, c, d;
-  hn::LoadInterleaved4(Integers(), &summands[kSummands * i], a, b, c, d);
+  hn::LoadInterleaved4(Integers(), &summands[summand_count * i], a, b, c, d);
   return hn::Add(hn::Add(a, b), hn::Add(c, d));
 }
 
@@ -94,7 +94,7 @@ Judged judge(const EdgeCandidates& candidates, size_t i, float y, const Threshol
 
   const IntegerVector gradient_x = load(candidates.gradient_x);
   const IntegerVector gradient_y = load(candidates.gradient_y);
-  const FloatVector scale = hn::Set(d, 0.5F / kBlurScale);
+  const FloatVector scale = hn::Set(d, 0.5F / blur_scale);
   const FloatVector x_component = hn::Mul(scale, hn::ConvertTo(d, gradient_x));
   const FloatVector y_component = hn::Mul(scale, hn::ConvertTo(d, gradient_y));
   const FloatVector squared = hn::Add(hn::Mul(x_component, x_component), hn::Mul(y_component, y_component));
@@ -122,7 +122,7 @@ Judged judge(const EdgeCandidates& candidates, size_t i, float y, const Threshol
   const FloatVector rise = hn::Add(hn::Mul(slope_x, judged.normal_x), hn::Mul(slope_y, judged.normal_y));
   const FloatVector squared_slope = hn::Add(hn::Mul(slope_x, slope_x), hn::Mul(slope_y, slope_y));
   const FloatVector least_squared_rise =
-      hn::Mul(hn::Set(d, kLeastSlopeAgreement * kLeastSlopeAgreement), squared_slope);
+      hn::Mul(hn::Set(d, least_slope_agreement * least_slope_agreement), squared_slope);
   const auto rises = hn::And(hn::Gt(rise, hn::Zero(d)), hn::Ge(hn::Mul(rise, rise), least_squared_rise));
 
   const auto along_row = hn::RebindMask(d, hn::Not(hn::Lt(hn::Abs(gradient_x), hn::Abs(gradient_y))));

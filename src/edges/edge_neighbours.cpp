@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -37,26 +38,26 @@ using Floats = hn::ScalableTag<float>;
 using Integers = hn::RebindToSigned<Floats>;
 using FloatVector = hn::Vec<Floats>;
 
-constexpr size_t kBatch = 64;  // points
-constexpr size_t kTurns = 3;   // straight on, to the right, to the left
-constexpr size_t kPlace = 4;   // floats of a point: where it is and its normal, as in EdgePixel
-constexpr size_t kSlack = 64;  // lanes of the longest vectors
+constexpr size_t batch_size = 64;   // points
+constexpr size_t turn_count = 3;    // straight on, to the right, to the left
+constexpr size_t place_floats = 4;  // floats of a point: where it is and its normal, as in EdgePixel
+constexpr size_t slack = 64;        // lanes of the longest vectors
 
 struct Batch {
-  HWY_ALIGN float own[kPlace * (kBatch + kSlack)];
-  HWY_ALIGN int32_t octants[kBatch + kSlack];                     // in which each edge leads ahead
-  HWY_ALIGN float others[2][kTurns][kPlace * (kBatch + kSlack)];  // ahead, behind
-  HWY_ALIGN int32_t candidates[2][kTurns][kBatch + kSlack];
+  HWY_ALIGN float own[place_floats * (batch_size + slack)];
+  HWY_ALIGN int32_t octants[batch_size + slack];                               // in which each edge leads ahead
+  HWY_ALIGN float others[2][turn_count][place_floats * (batch_size + slack)];  // ahead, behind
+  HWY_ALIGN int32_t candidates[2][turn_count][batch_size + slack];
 };
 
 // As octant() does.
 void findOctants(size_t count, Batch& batch) {
   const Floats d;
   const Integers di;
-  const auto tan_of_eighth = hn::Set(d, kTanOfEighth);
+  const auto tan_of_eighth = hn::Set(d, tan_of_half_octant);
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
     FloatVector x, y, normal_x, normal_y;
-    hn::LoadInterleaved4(d, &batch.own[kPlace * i], x, y, normal_x, normal_y);
+    hn::LoadInterleaved4(d, &batch.own[place_floats * i], x, y, normal_x, normal_y);
     const auto along_x = hn::Neg(normal_y);
     const auto along_y = normal_x;
     const auto is_level = hn::Not(hn::Gt(hn::Abs(along_y), hn::Mul(tan_of_eighth, hn::Abs(along_x))));
@@ -78,9 +79,9 @@ using Steps = std::array<std::ptrdiff_t, 19>;
 void lookUp(const std::vector<EdgePixel>& points, const cv::Mat& index, const Steps& steps, size_t first, size_t count,
             Batch& batch) {
   static_assert(offsetof(EdgePixel, pixel) == 0 && offsetof(EdgePixel, normal) == 2 * sizeof(float));
-  constexpr std::array<size_t, kTurns> kTurn = {0, 1, 7};
-  constexpr size_t kBytes = kPlace * sizeof(float);
-  for (size_t i = 0; i < count; ++i) std::memcpy(&batch.own[kPlace * i], &points[first + i], kBytes);
+  constexpr std::array<size_t, turn_count> turn_octants = {0, 1, 7};
+  constexpr size_t place_bytes = place_floats * sizeof(float);
+  for (size_t i = 0; i < count; ++i) std::memcpy(&batch.own[place_floats * i], &points[first + i], place_bytes);
   findOctants(count, batch);
   const auto* entries = index.ptr<int32_t>(0);
   const auto row_step = static_cast<std::ptrdiff_t>(index.step1());
@@ -89,11 +90,11 @@ void lookUp(const std::vector<EdgePixel>& points, const cv::Mat& index, const St
     const int32_t* entry = entries + cell.y * row_step + cell.x;
     const std::ptrdiff_t* straight = &steps[static_cast<size_t>(batch.octants[i])];
     for (size_t side = 0; side < 2; ++side) {
-      for (size_t turn = 0; turn < kTurns; ++turn) {
-        const int32_t candidate = entry[straight[4 * side + kTurn[turn]]];
+      for (size_t turn = 0; turn < turn_count; ++turn) {
+        const int32_t candidate = entry[straight[4 * side + turn_octants[turn]]];
         const int32_t readable = candidate & ~(candidate >> 31);  // the first point in place of -1
         batch.candidates[side][turn][i] = candidate;
-        std::memcpy(&batch.others[side][turn][kPlace * i], &points[static_cast<size_t>(readable)], kBytes);
+        std::memcpy(&batch.others[side][turn][place_floats * i], &points[static_cast<size_t>(readable)], place_bytes);
       }
     }
   }
@@ -107,9 +108,10 @@ hn::Vec<Integers> chooseSide(const Batch& batch, size_t side, size_t i, FloatVec
   const Integers di;
   auto best = hn::Set(di, -1);
   auto least_cost = hn::Set(d, std::numeric_limits<float>::max());
-  for (size_t turn = 0; turn < kTurns; ++turn) {
+  for (size_t turn = 0; turn < turn_count; ++turn) {
     FloatVector other_x, other_y, other_normal_x, other_normal_y;
-    hn::LoadInterleaved4(d, &batch.others[side][turn][kPlace * i], other_x, other_y, other_normal_x, other_normal_y);
+    hn::LoadInterleaved4(d, &batch.others[side][turn][place_floats * i], other_x, other_y, other_normal_x,
+                         other_normal_y);
     const auto dot = [](FloatVector ax, FloatVector ay, FloatVector bx, FloatVector by)
                          HWY_ATTR { return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)); };
     const auto difference_x = hn::Sub(other_x, pixel_x);
@@ -123,7 +125,7 @@ hn::Vec<Integers> chooseSide(const Batch& batch, size_t side, size_t i, FloatVec
         hn::Add(dot(difference_x, difference_y, difference_x, difference_y), hn::Mul(hn::Set(d, 4.0F), off));
     const auto candidate = hn::LoadU(di, &batch.candidates[side][turn][i]);
     const auto is_there = hn::RebindMask(d, hn::Gt(candidate, hn::Set(di, -1)));
-    const auto agrees = hn::And(is_there, hn::Ge(agreement, hn::Set(d, kLeastNeighbourAgreement)));
+    const auto agrees = hn::And(is_there, hn::Ge(agreement, hn::Set(d, least_neighbour_agreement)));
     const auto allowed = hn::And(agrees, hn::Gt(way, hn::Zero(d)));
     const auto better = hn::And(allowed, hn::Lt(cost, least_cost));
     least_cost = hn::IfThenElse(better, cost, least_cost);
@@ -137,19 +139,19 @@ void chooseByVectors(const std::vector<EdgePixel>& points, const cv::Mat& index,
   const Floats d;
   const Integers di;
   Batch batch;
-  HWY_ALIGN int32_t best_ahead[kBatch + kSlack];
-  HWY_ALIGN int32_t best_behind[kBatch + kSlack];
+  HWY_ALIGN int32_t best_ahead[batch_size + slack];
+  HWY_ALIGN int32_t best_behind[batch_size + slack];
   std::memset(&batch, 0, sizeof(batch));
   Steps steps;
   for (size_t i = 0; i < steps.size(); ++i) steps[i] = stepTo(static_cast<int>(i % 8), index);
   const auto* entries = index.ptr<int32_t>(0);
   const auto row_step = static_cast<std::ptrdiff_t>(index.step1());
-  for (size_t first = 0; first < points.size(); first += kBatch) {
-    const size_t count = std::min(kBatch, points.size() - first);
+  for (size_t first = 0; first < points.size(); first += batch_size) {
+    const size_t count = std::min(batch_size, points.size() - first);
     lookUp(points, index, steps, first, count, batch);
     for (size_t i = 0; i < count; i += hn::Lanes(d)) {
       FloatVector x, y, normal_x, normal_y;
-      hn::LoadInterleaved4(d, &batch.own[kPlace * i], x, y, normal_x, normal_y);
+      hn::LoadInterleaved4(d, &batch.own[place_floats * i], x, y, normal_x, normal_y);
       const auto opposite_x = hn::Neg(normal_x);
       const auto opposite_y = hn::Neg(normal_y);
       // Along `ahead` the edge runs a quarter turn from its normal.
@@ -159,8 +161,8 @@ void chooseByVectors(const std::vector<EdgePixel>& points, const cv::Mat& index,
     for (size_t i = 0; i < count; ++i) {
       const cv::Point& cell = points[first + i].cell;
       const bool is_named = entries[cell.y * row_step + cell.x] == static_cast<int32_t>(first + i);
-      ahead[first + i] = is_named ? best_ahead[i] : kNotNamed;
-      behind[first + i] = is_named ? best_behind[i] : kNotNamed;
+      ahead[first + i] = is_named ? best_ahead[i] : not_named;
+      behind[first + i] = is_named ? best_behind[i] : not_named;
     }
   }
 }
@@ -201,10 +203,12 @@ HWY_EXPORT(keepMutualByVectors);
 
 void chooseNeighbours(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
                       std::vector<int>& behind) {
+  assert(index.type() == CV_32S && index.isContinuous());
   HWY_DYNAMIC_DISPATCH(chooseByVectors)(points, index, ahead, behind);
 }
 
 void keepMutual(std::vector<int>& ahead, std::vector<int>& behind) {
+  assert(ahead.size() == behind.size());
   HWY_DYNAMIC_DISPATCH(keepMutualByVectors)(ahead, behind);
 }
 

@@ -17,7 +17,7 @@ int continuation(const std::vector<EdgePixel>& points, const cv::Mat& index, con
     const int candidate = entry[stepTo((straight + turn) % 8, index)];
     if (candidate < 0) continue;
     const EdgePixel& other = points[static_cast<size_t>(candidate)];
-    if (point.normal.dot(other.normal) < kLeastNeighbourAgreement) continue;
+    if (point.normal.dot(other.normal) < least_neighbour_agreement) continue;
     const Eigen::Vector2f difference = other.pixel - point.pixel;
     if (difference.dot(direction) <= 0) continue;
     // Symmetric in the two points, so that they mostly choose each other: nearness, and how far each lies off the
@@ -40,18 +40,18 @@ int octant(const Eigen::Vector2f& direction) {
   const float y = std::abs(direction.y());
   const int sign_x = direction.x() > 0 ? 1 : -1;
   const int sign_y = direction.y() > 0 ? 1 : -1;
-  const int dx = x > kTanOfEighth * y ? sign_x : 0;
-  const int dy = y > kTanOfEighth * x ? sign_y : 0;
-  constexpr std::array<int, 9> kOctants = {5, 6, 7, 4, 0, 0, 3, 2, 1};
+  const int dx = x > tan_of_half_octant * y ? sign_x : 0;
+  const int dy = y > tan_of_half_octant * x ? sign_y : 0;
+  constexpr std::array<int, 9> octant_of_entry = {5, 6, 7, 4, 0, 0, 3, 2, 1};
   const int entry = 3 * (dy + 1) + dx + 1;
-  return kOctants[static_cast<size_t>(entry)];
+  return octant_of_entry[static_cast<size_t>(entry)];
 }
 
 std::ptrdiff_t stepTo(int octant, const cv::Mat& index) {
-  constexpr std::array<int, 8> kColumns = {1, 1, 0, -1, -1, -1, 0, 1};
-  constexpr std::array<int, 8> kRows = {0, 1, 1, 1, 0, -1, -1, -1};
+  constexpr std::array<int, 8> column_steps = {1, 1, 0, -1, -1, -1, 0, 1};
+  constexpr std::array<int, 8> row_steps = {0, 1, 1, 1, 0, -1, -1, -1};
   const auto at = static_cast<size_t>(octant);
-  return kRows[at] * static_cast<std::ptrdiff_t>(index.step1()) + kColumns[at];
+  return row_steps[at] * static_cast<std::ptrdiff_t>(index.step1()) + column_steps[at];
 }
 
 void chooseNeighboursReference(const std::vector<EdgePixel>& points, const cv::Mat& index, std::vector<int>& ahead,
@@ -62,8 +62,8 @@ void chooseNeighboursReference(const std::vector<EdgePixel>& points, const cv::M
     const bool is_named = *entry == static_cast<int>(i);
     // Along `ahead` the edge runs a quarter turn from its normal.
     const Eigen::Vector2f direction(-point.normal.y(), point.normal.x());
-    ahead[i] = is_named ? continuation(points, index, point, entry, direction) : kNotNamed;
-    behind[i] = is_named ? continuation(points, index, point, entry, -direction) : kNotNamed;
+    ahead[i] = is_named ? continuation(points, index, point, entry, direction) : not_named;
+    behind[i] = is_named ? continuation(points, index, point, entry, -direction) : not_named;
   }
 }
 

@@ -35,19 +35,19 @@ using Pixels = hn::ScalableTag<int16_t>;
 using Window = hn::CappedTag<int16_t, 8>;  // a row of the window to which a plane is fitted
 using WindowSums = hn::RepartitionToWide<Window>;
 
-constexpr int kLargestWindowRadius = 3;  // that fits a row of the window
+constexpr int largest_window_radius = 3;  // that fits a row of the window
 
 // Steepness is judged before all else in 16 bits: the upper halves of the squares of the components of twice the
-// blurred image's gradient times kSquareScale, each cut off at kLargestComponent.
-constexpr int kSquareScale = 8;
-constexpr int16_t kLargestComponent = INT16_MAX / kSquareScale;
+// blurred image's gradient times square_scale, each cut off at largest_component.
+constexpr int square_scale = 8;
+constexpr int16_t largest_component = INT16_MAX / square_scale;
 
 // No gradient that is steep enough has a smaller sum of them.
 int16_t leastSquare(const EdgeOptions& options) {
-  constexpr double kLost = 2.01;          // by rounding down twice, and by what floating-point numbers may round up
-  constexpr double kLargest = 127 * 127;  // of a component that is cut off, or less
-  const double steep = 2.0 * kBlurScale * kSquareScale * std::max(0.0, options.gradient_threshold);
-  return static_cast<int16_t>(std::clamp(steep * steep / (1 << 16) - kLost, 0.0, kLargest));
+  constexpr double lost = 2.01;  // by rounding down twice, and by what floating-point numbers may round up
+  constexpr double largest_cut_off = 127 * 127;  // of a component that is cut off, or less
+  const double steep = 2.0 * blur_scale * square_scale * std::max(0.0, options.gradient_threshold);
+  return static_cast<int16_t>(std::clamp(steep * steep / (1 << 16) - lost, 0.0, largest_cut_off));
 }
 
 // Sets the bits of row y, the first one for the pixel `begin`, of those `count` pixels that may hold an edge: the DoG
@@ -78,7 +78,7 @@ void markRow(const DifferenceOfGaussians& images, int y, int begin, size_t count
     const auto crosses =
         hn::Or(hn::AndNot(hn::Gt(lowest, bar), positive), hn::Not(hn::Or(positive, hn::Lt(highest, bar))));
     const auto squared = [&](hn::Vec<Pixels> component) HWY_ATTR {
-      const auto scaled = hn::ShiftLeft<3>(hn::Min(component, hn::Set(d, kLargestComponent)));
+      const auto scaled = hn::ShiftLeft<3>(hn::Min(component, hn::Set(d, largest_component)));
       return hn::MulHigh(scaled, scaled);
     };
     const auto steep = hn::Gt(hn::Add(squared(along_x), squared(along_y)), below_least_square);
@@ -102,12 +102,12 @@ size_t listMarked(const uint8_t* bits, int begin, size_t count, int32_t* HWY_RES
 }
 
 // The least-squares plane's slopes up to a factor, over the (2 radius + 1)^2 pixels around `centre` of the DoG, and how
-// many of them are positive, each in kSummands parts.
+// many of them are positive, each in summand_count parts.
 template <int radius>
 HWY_INLINE void fitPlane(const int16_t* centre, std::ptrdiff_t step, int32_t* HWY_RESTRICT slope_x,
                          int32_t* HWY_RESTRICT slope_y, int32_t* HWY_RESTRICT positive) {
-  constexpr int16_t kInside = 2 * radius;
-  HWY_ALIGN constexpr int16_t kColumns[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  constexpr int16_t last_inside = 2 * radius;
+  HWY_ALIGN constexpr int16_t lane_columns[8] = {0, 1, 2, 3, 4, 5, 6, 7};
   const Window d;
   const WindowSums wide;
   const size_t lanes = hn::Lanes(d);
@@ -115,8 +115,8 @@ HWY_INLINE void fitPlane(const int16_t* centre, std::ptrdiff_t step, int32_t* HW
   auto x0 = hn::Zero(wide), x1 = hn::Zero(wide), y0 = hn::Zero(wide), y1 = hn::Zero(wide), p0 = hn::Zero(wide),
        p1 = hn::Zero(wide);
   for (size_t i = 0; i < 8; i += lanes) {
-    const auto columns = hn::Load(d, kColumns + i);
-    const auto is_inside = hn::Lt(columns, hn::Set(d, kInside + 1));
+    const auto columns = hn::Load(d, lane_columns + i);
+    const auto is_inside = hn::Lt(columns, hn::Set(d, last_inside + 1));
     const auto weights = hn::IfThenElseZero(is_inside, hn::Sub(columns, hn::Set(d, radius)));
     const auto inside = hn::IfThenElseZero(is_inside, hn::Set(d, 1));
     const int16_t* at = centre - radius * step - radius + i;
@@ -156,16 +156,16 @@ void gather(const DifferenceOfGaussians& images, int y, size_t count, EdgeCandid
     candidates.before[i] = smoothed(dog + x - across);
     candidates.here[i] = smoothed(dog + x);
     candidates.after[i] = smoothed(dog + x + across);
-    fitPlane<radius>(dog + x, dog_step, &candidates.slope_x[kSummands * i], &candidates.slope_y[kSummands * i],
-                     &candidates.positive[kSummands * i]);
+    fitPlane<radius>(dog + x, dog_step, &candidates.slope_x[summand_count * i], &candidates.slope_y[summand_count * i],
+                     &candidates.positive[summand_count * i]);
   }
 }
 
 // Adds those of the first `count` candidates of row y that are edges, and that there is room for.
 void addEdges(size_t count, int y, const Thresholds& thresholds, size_t most, EdgePixels& pixels,
               int32_t* HWY_RESTRICT index) {
-  HWY_ALIGN float pixel_x[kMostLanes], pixel_y[kMostLanes], normal_x[kMostLanes], normal_y[kMostLanes],
-      gradient[kMostLanes], offset[kMostLanes];
+  HWY_ALIGN float pixel_x[most_lanes], pixel_y[most_lanes], normal_x[most_lanes], normal_y[most_lanes],
+      gradient[most_lanes], offset[most_lanes];
   uint8_t bits[sizeof(uint64_t)] = {};
   const Floats d;
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
@@ -191,14 +191,14 @@ void addEdges(size_t count, int y, const Thresholds& thresholds, size_t most, Ed
 }
 
 void prepareCandidates(size_t width, EdgeCandidates& candidates) {
-  constexpr size_t kSlack = HWY_MAX_BYTES;
-  candidates.marks.resize(width / 8 + kSlack);
+  constexpr size_t slack = HWY_MAX_BYTES;
+  candidates.marks.resize(width / 8 + slack);
   for (auto* values : {&candidates.x, &candidates.gradient_x, &candidates.gradient_y, &candidates.before,
                        &candidates.here, &candidates.after}) {
-    values->resize(width + kSlack);
+    values->resize(width + slack);
   }
   for (auto* summands : {&candidates.slope_x, &candidates.slope_y, &candidates.positive}) {
-    summands->resize(kSummands * (width + kSlack));
+    summands->resize(summand_count * (width + slack));
   }
 }
 
@@ -207,7 +207,7 @@ bool findByVectors(const DifferenceOfGaussians& images, const EdgeOptions& optio
                    cv::Mat& index) {
   const cv::Size size = images.dog.size();
   const int radius = options.plane_fit_radius;
-  if (radius > kLargestWindowRadius || static_cast<size_t>(size.width) < hn::Lanes(Pixels())) return false;
+  if (radius > largest_window_radius || static_cast<size_t>(size.width) < hn::Lanes(Pixels())) return false;
   prepareEdgePixels(size, pixels, index);
   prepareCandidates(static_cast<size_t>(size.width), pixels.candidates);
   const int margin = edgeMargin(options);

@@ -28,7 +28,7 @@ struct EdgePixel {
   cv::Point cell;          // the pixel that it lies in
 };
 
-// Of one row of the image: the pixels that may hold an edge, and integers of the images around each.
+// For one row of the image: the pixels that may hold an edge, and integers of the images around each.
 struct EdgeCandidates {
   std::vector<uint8_t> marks;       // a bit a pixel
   std::vector<int32_t> x;           // [px]
@@ -56,11 +56,11 @@ inline size_t mostEdgePoints(const cv::Size& size) { return static_cast<size_t>(
 void findEdgePixels(const DifferenceOfGaussians& images, const EdgeOptions& options, EdgePixels& pixels,
                     cv::Mat& index);
 
-// The same, one pixel after the other.
+// What findEdgePixels gives, one pixel after the other.
 void findEdgePixelsReference(const DifferenceOfGaussians& images, const EdgeOptions& options, EdgePixels& pixels,
                              cv::Mat& index);
 
-// Shapes the memory and empties it: what both of them do first.
+// Shapes the memory and empties it: what findEdgePixels and its reference do first.
 void prepareEdgePixels(const cv::Size& size, EdgePixels& pixels, cv::Mat& index);
 
 // Edges are looked for in pixels that lie so far inside the image [px].

@@ -25,9 +25,9 @@ bool mayBeEdge(const DifferenceOfGaussians& images, int x, int y, int least_diff
 // The blurred grey values' gradient at a pixel [grey/px].
 Eigen::Vector2f greyGradient(const cv::Mat& narrow, int x, int y) {
   const auto* row = narrow.ptr<uint16_t>(y);
-  constexpr float kScale = 0.5F / kBlurScale;
-  return {kScale * static_cast<float>(row[x + 1] - row[x - 1]),
-          kScale * static_cast<float>(narrow.ptr<uint16_t>(y + 1)[x] - narrow.ptr<uint16_t>(y - 1)[x])};
+  constexpr float half_gain = 0.5F / blur_scale;
+  return {half_gain * static_cast<float>(row[x + 1] - row[x - 1]),
+          half_gain * static_cast<float>(narrow.ptr<uint16_t>(y + 1)[x] - narrow.ptr<uint16_t>(y - 1)[x])};
 }
 
 // Adds the edge point of pixel (x, y), if there is one and room for it.
@@ -67,7 +67,7 @@ void prepareEdgePixels(const cv::Size& size, EdgePixels& pixels, cv::Mat& index)
 
 int16_t leastDifference(const EdgeOptions& options) {
   // The larger component of a gradient is at least its length over sqrt 2.
-  return static_cast<int16_t>(std::clamp(2.0 * kBlurScale * options.gradient_threshold * 0.7, 1.0, 32767.0));
+  return static_cast<int16_t>(std::clamp(2.0 * blur_scale * options.gradient_threshold * 0.7, 1.0, 32767.0));
 }
 
 void findEdgePixelsReference(const DifferenceOfGaussians& images, const EdgeOptions& options, EdgePixels& pixels,

@@ -1,6 +1,7 @@
 #include "edges/structure_tensor.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace edgeslam {
@@ -50,6 +51,7 @@ cv::Rect windowInside(const cv::Size& size, const Eigen::Vector2f& pixel, int wi
 }  // namespace
 
 GradientProducts gradientProductsAround(const cv::Mat& grey, const Eigen::Vector2f& pixel, int window) {
+  assert(window % 2 == 1);
   const cv::Rect inside = windowInside(grey.size(), pixel, window);
   return inside.empty() ? GradientProducts() : gradientProducts(grey, inside);
 }

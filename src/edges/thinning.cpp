@@ -1,5 +1,6 @@
 #include "edges/thinning.h"
 
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -11,6 +12,7 @@ bool nearerToRows(const Eigen::Vector2f& normal) { return std::abs(normal.x()) >
 }  // namespace
 
 void thin(const std::vector<EdgePixel>& points, cv::Mat& index) {
+  assert(points.empty() || index.type() == CV_32S);
   const auto row_step = static_cast<std::ptrdiff_t>(index.step1());
   auto* entries = index.ptr<int>(0);
   for (const EdgePixel& point : points) {

@@ -8,8 +8,8 @@
 
 namespace edgeslam {
 
-// Of two points next to each other across the same edge, the one nearer to its pixel's centre stays: `index`, as
-// findEdgePixels gave it, no longer names the other.
+// Keeps, where two points lie next to each other across the same edge, the one nearer to its pixel's centre: `index`,
+// as findEdgePixels gave it, no longer names the other.
 void thin(const std::vector<EdgePixel>& points, cv::Mat& index);
 
 }  // namespace edgeslam

@@ -8,13 +8,13 @@
 
 namespace edgeslam {
 
-constexpr int kLargestFitRadius = 7;          // [px]
-constexpr float kLeastSlopeAgreement = 0.7F;  // cosine between the plane's gradient and the normal
+constexpr int largest_fit_radius = 7;          // [px]
+constexpr float least_slope_agreement = 0.7F;  // cosine between the plane's gradient and the normal
 
 // Offset of the zero line of `dog` (CV_16S) from the centre of pixel (x, y) along its row (`along_row`) or column,
-// within
-// [-0.5, 0.5]: where the line crosses more rows than columns, one pixel of each row finds it. NaN where the sign does
-// not change next to this pixel, or is nearer to the neighbour. The pixel lies at least one pixel inside the image.
+// within [-0.5, 0.5] [px]: where the line crosses more rows than columns, one pixel of each row finds it. NaN where the
+// sign does not change next to this pixel, or the line is nearer to the neighbour. The pixel lies at least one pixel
+// inside the image.
 float offsetOfZero(const cv::Mat& dog, int x, int y, bool along_row);
 
 // True where, among the (2 radius + 1)^2 pixels of `dog` around (x, y), |positive - negative| / all is at most

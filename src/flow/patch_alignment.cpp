@@ -1,5 +1,6 @@
 #include "flow/patch_alignment.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "flow/warped_window.h"
@@ -121,6 +122,7 @@ InverseRows invert(const Eigen::Matrix3f& h) {
 
 bool makeTemplate(const cv::Mat& image, const Eigen::Vector2f& pixel, const Eigen::Matrix2f& warp, int side,
                   PatchTemplate& patch) {
+  assert(image.type() == CV_8U && side >= 1 && side <= largest_patch_side);
   const int outer = side + 2;  // one more on each side for the central differences
   const auto radius = static_cast<float>(outer / 2);
   const float reach = radius * std::max(warp.row(0).cwiseAbs().sum(), warp.row(1).cwiseAbs().sum());
@@ -176,6 +178,7 @@ float correlationAt(const PatchTemplate& patch, const cv::Mat& image, const Eige
 }
 
 PatchDifference differenceAt(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel) {
+  assert(readable(image, pixel, static_cast<float>(patch.samples.side / 2)));
   const PatchComparison comparison = compare(patch, image, pixel);
   const Eigen::Matrix3f& h = patch.normal_matrix;
   PatchDifference difference;

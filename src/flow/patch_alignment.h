@@ -48,7 +48,7 @@ struct PatchDifference {
   Eigen::Vector2f along_gradient = Eigen::Vector2f::Zero();  // times the patch's gradient, summed [grey^2/px]
 };
 
-// Of the window of `image` around `pixel`, which lies inside the image.
+// The difference of the window of `image` around `pixel`, which lies inside the image.
 PatchDifference differenceAt(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel);
 
 // Normalized cross-correlation of the patch with `image` around `pixel`; -1 where it leaves the readable part.

@@ -1,5 +1,6 @@
 #include "flow/patch_kernels.h"
 
+#include <cassert>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -217,10 +218,12 @@ HWY_EXPORT(compareVectors);
 
 void sampleWindow(const std::uint8_t* corner, std::ptrdiff_t step, const BilinearWeights& weights, int side,
                   SampledWindow& window) {
+  assert(side >= 1 && side <= largest_patch_side);
   HWY_DYNAMIC_DISPATCH(sampleWindowVectors)(corner, step, weights, side, window);
 }
 
 PatchSums makePatchSamples(const SampledWindow& window, int side, PatchSamples& patch) {
+  assert(side >= 1 && side <= largest_patch_side);
   return HWY_DYNAMIC_DISPATCH(makePatchVectors)(window, side, patch);
 }
 

@@ -62,7 +62,7 @@ PatchSums makePatchSamples(const SampledWindow& window, int side, PatchSamples& 
 ComparisonSums comparePatch(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
                             const BilinearWeights& weights);
 
-// The same, one sample after the other.
+// What sampleWindow, makePatchSamples and comparePatch give, one sample after the other.
 void sampleWindowReference(const std::uint8_t* corner, std::ptrdiff_t step, const BilinearWeights& weights, int side,
                            SampledWindow& window);
 PatchSums makePatchSamplesReference(const SampledWindow& window, int side, PatchSamples& patch);

@@ -9,7 +9,7 @@
 
 namespace edgeslam {
 
-// Where the samples lie: that of the window's centre, and from one sample to the next [px / 2^16].
+// Where the samples of a window lie: that of its centre, and from one sample to the next [px / 2^16].
 struct WarpedGrid {
   std::int32_t x = 0, y = 0;
   std::int32_t x_by_column = 1 << 16, y_by_column = 0;
@@ -22,7 +22,7 @@ struct WarpedGrid {
 void sampleWarpedWindow(const std::uint8_t* origin, std::ptrdiff_t step, const WarpedGrid& grid, int side,
                         SampledWindow& window);
 
-// The same, one sample after the other.
+// What sampleWarpedWindow gives, one sample after the other.
 void sampleWarpedWindowReference(const std::uint8_t* origin, std::ptrdiff_t step, const WarpedGrid& grid, int side,
                                  SampledWindow& window);
 

@@ -11,17 +11,20 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
+#include "geometry/median.h"
+#include "geometry/relative_rotation.h"
+
 namespace edgeslam {
 namespace {
 
 using Bearings = std::vector<Eigen::Vector3d>;
 
-constexpr int kLeastMatches = 8;
-constexpr double kLeastZ = 0.05;       // of a bearing, for a place on the normalized image plane
-constexpr double kRotationOnly = 0.9;  // share of matches that a rotation explains, from which there is no translation
-constexpr double kConfidence = 0.999;  // of RANSAC
-constexpr int kRansacIterations = 1000;  // at most
-constexpr int kRefinements = 15;
+constexpr int least_matches = 8;
+constexpr double least_z = 0.05;            // of a bearing, for a place on the normalized image plane
+constexpr double rotation_only_from = 0.9;  // share of matches from which a rotation explains all there is
+constexpr double ransac_confidence = 0.999;
+constexpr int ransac_iterations = 1000;  // at most
+constexpr int most_refinements = 15;
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -69,7 +72,7 @@ struct NormalizedMatches {
 NormalizedMatches shuffled(const Bearings& first, const Bearings& second, std::uint64_t seed) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    if (first[i].z() >= kLeastZ && second[i].z() >= kLeastZ) order.push_back(i);
+    if (first[i].z() >= least_z && second[i].z() >= least_z) order.push_back(i);
   }
   std::mt19937_64 random(seed);
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
@@ -109,7 +112,7 @@ std::vector<Pose> posesOfEssential(const Eigen::Matrix3d& essential) {
 
 std::vector<Pose> fivePoint(const NormalizedMatches& matches, double threshold) {
   const cv::Mat essential = cv::findEssentialMat(matches.first, matches.second, cv::Mat::eye(3, 3, CV_64F), cv::RANSAC,
-                                                 kConfidence, threshold, kRansacIterations);
+                                                 ransac_confidence, threshold, ransac_iterations);
   if (essential.rows < 3 || essential.cols != 3) return {};
   return posesOfEssential(toEigen(essential));
 }
@@ -118,7 +121,7 @@ std::vector<Pose> fivePoint(const NormalizedMatches& matches, double threshold) 
 // five-point algorithm returns either; often only one has the points in front of both cameras.
 std::vector<Pose> planePoses(const NormalizedMatches& matches, double threshold) {
   const cv::Mat homography =
-      cv::findHomography(matches.first, matches.second, cv::RANSAC, 2 * threshold, cv::noArray(), kRansacIterations);
+      cv::findHomography(matches.first, matches.second, cv::RANSAC, 2 * threshold, cv::noArray(), ransac_iterations);
   if (homography.empty() || !toEigen(homography).allFinite()) return {};
   std::vector<cv::Mat> rotations, translations, normals;
   cv::decomposeHomographyMat(homography, cv::Mat::eye(3, 3, CV_64F), rotations, translations, normals);
@@ -189,7 +192,7 @@ Pose refine(Pose pose, const Bearings& first, const Bearings& second, double wid
   double damping = 1e-6;
   Eigen::Matrix<double, 3, 2> tangents = tangentsOf(pose.translation);
   EpipolarSystem system = epipolarSystem(pose, tangents, first, second, width);
-  for (int iteration = 0; iteration < kRefinements; ++iteration) {
+  for (int iteration = 0; iteration < most_refinements; ++iteration) {
     Eigen::Matrix<double, 5, 5> damped = system.hessian;
     damped.diagonal() += damping * (system.hessian.diagonal().array() + 1e-12).matrix();
     const Eigen::Matrix<double, 5, 1> step = -damped.ldlt().solve(system.gradient);
@@ -217,10 +220,7 @@ double medianParallax(const Eigen::Quaterniond& rotation, const Bearings& first,
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (inliers[i]) angles.push_back(angleBetween(rotation * first[i], second[i]));
   }
-  if (angles.empty()) return 0;
-  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  return *middle;
+  return angles.empty() ? 0 : upperMedian(angles);
 }
 
 // A rotation explains a match where each bearing need turn by half the remaining angle, which makes it comparable to
@@ -243,16 +243,16 @@ RelativePose relativePose(const Bearings& first, const Bearings& second, double 
   assert(first.size() == second.size());
   RelativePose result;
   result.inliers.assign(first.size(), 0);
-  if (first.size() < kLeastMatches) return result;
+  if (first.size() < least_matches) return result;
 
   result.second_T_first.rotation = relativeRotation(first, second).rotation;
   result.inlier_count = markRotationInliers(result.second_T_first.rotation, first, second, threshold, &result.inliers);
   result.rotation_only_share = static_cast<double>(result.inlier_count) / static_cast<double>(first.size());
   result.parallax = medianParallax(result.second_T_first.rotation, first, second, result.inliers);
-  if (result.rotation_only_share > kRotationOnly) return result;
+  if (result.rotation_only_share > rotation_only_from) return result;
 
   const NormalizedMatches matches = shuffled(first, second, seed);
-  if (matches.first.size() < kLeastMatches) return result;
+  if (matches.first.size() < least_matches) return result;
   int best_count = 0;
   std::vector<char> inliers;
   for (const std::vector<Pose>& poses : {fivePoint(matches, threshold), planePoses(matches, threshold)}) {
@@ -264,7 +264,7 @@ RelativePose relativePose(const Bearings& first, const Bearings& second, double 
     result.second_T_first = pose;
     result.inliers = inliers;
   }
-  if (best_count < kLeastMatches) return result;
+  if (best_count < least_matches) return result;
   result.found = true;
   result.inlier_count = best_count;
   result.parallax = medianParallax(result.second_T_first.rotation, first, second, result.inliers);

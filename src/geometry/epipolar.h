@@ -1,11 +1,9 @@
-// Epipolar geometry: Nister's five-point algorithm in RANSAC (P8, P14, P21) and the three-view check (P7, fig. 3).
+// Relative pose of two views from their epipolar geometry: Nister's five-point algorithm in RANSAC (P8, P14, P21).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "geometry/camera.h"
-#include "geometry/measurement.h"
 #include "geometry/pose.h"
 
 namespace edgeslam {
@@ -29,24 +27,5 @@ struct RelativePose {
 // that rotation's). It tells nothing of two-fold solutions: the caller judges the structure.
 RelativePose relativePose(const std::vector<Eigen::Vector3d>& first, const std::vector<Eigen::Vector3d>& second,
                           double threshold, std::uint64_t seed);
-
-// Rotation second_R_first that best aligns matching unit bearings (Horn/Kabsch, robustified by trimming), and its
-// median remaining angle [rad].
-struct RelativeRotation {
-  Eigen::Quaterniond rotation;
-  double median_error = 0;
-};
-RelativeRotation relativeRotation(const std::vector<Eigen::Vector3d>& first,
-                                  const std::vector<Eigen::Vector3d>& second);
-
-// P7: deviation, whitened by the middle measurement, of the middle view's pixel from where the other two views'
-// epipolar lines cross in it. Where they cross at less than 2 degrees, the larger of the (Mahalanobis) distances to
-// each line is taken instead; a view without a baseline to the middle one predicts its own bearing. Infinite where the
-// lines cross behind the camera. Poses are camera to world. `middle` is the measurement in the middle view; the other
-// two pixels are taken as exact, so for an edge point, whose place along the edge is not known, they err by as much as
-// they slid.
-double threeViewError(const Camera& camera, const Pose& world_T_first, const Pose& world_T_middle,
-                      const Pose& world_T_last, const Eigen::Vector2d& first_pixel, const Measurement& middle,
-                      const Eigen::Vector2d& last_pixel);
 
 }  // namespace edgeslam

@@ -1,16 +1,18 @@
-// The rotation alone between two views, by Kabsch's method (1976) on bearings with trimming.
+#include "geometry/relative_rotation.h"
+
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "geometry/epipolar.h"
+#include "geometry/median.h"
+#include "geometry/pose.h"
 
 namespace edgeslam {
 namespace {
 
-constexpr int kRounds = 15;
-constexpr double kTrim = 2.5;  // matches with an error beyond this many medians are left out of the next round
+constexpr int most_rounds = 15;
+constexpr double trim_factor = 2.5;  // matches with an error beyond this many medians are left out of the next round
 
 Eigen::Quaterniond kabsch(const std::vector<Eigen::Vector3d>& first, const std::vector<Eigen::Vector3d>& second,
                           const std::vector<double>& errors, double largest_error) {
@@ -24,12 +26,6 @@ Eigen::Quaterniond kabsch(const std::vector<Eigen::Vector3d>& first, const std::
   return Eigen::Quaterniond(Eigen::Matrix3d(u * svd.matrixV().transpose())).normalized();
 }
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 RelativeRotation relativeRotation(const std::vector<Eigen::Vector3d>& first,
@@ -39,15 +35,15 @@ RelativeRotation relativeRotation(const std::vector<Eigen::Vector3d>& first,
   if (first.empty()) return result;
   std::vector<double> errors(first.size(), 0.0);
   double largest_error = 0;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < most_rounds; ++round) {
     const Eigen::Quaterniond previous = result.rotation;
     result.rotation = kabsch(first, second, errors, largest_error);
     for (std::size_t i = 0; i < first.size(); ++i) {
       const Eigen::Vector3d rotated = result.rotation * first[i];
       errors[i] = std::atan2(rotated.cross(second[i]).norm(), rotated.dot(second[i]));
     }
-    result.median_error = medianOf(errors);
-    largest_error = std::max(kTrim * result.median_error, 1e-12);
+    result.median_error = upperMedian(std::vector<double>(errors));
+    largest_error = std::max(trim_factor * result.median_error, 1e-12);
     if (round > 0 && rotationAngle(previous, result.rotation) < 1e-10) break;
   }
   return result;

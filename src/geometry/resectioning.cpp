@@ -17,11 +17,11 @@ namespace {
 using Points = Vectors3;
 using Indices = std::pmr::vector<std::size_t>;
 
-constexpr std::size_t kLeastPoints = 6;
-constexpr std::size_t kSample = 4;     // three for P3P, one to choose among its solutions
-constexpr double kLeastZ = 0.05;       // of a bearing, for a place on the normalized image plane
-constexpr double kConfidence = 0.999;  // of RANSAC
-constexpr int kRefinements = 15;
+constexpr std::size_t least_points = 6;
+constexpr std::size_t sample_size = 4;  // three for P3P, one to choose among its solutions
+constexpr double least_z = 0.05;        // of a bearing, for a place on the normalized image plane
+constexpr double ransac_confidence = 0.999;
+constexpr int most_refinements = 15;
 
 // Correspondences in the form OpenCV asks for, with the identity as camera matrix.
 struct Normalized {
@@ -78,17 +78,17 @@ bool spanPlane(const Points& points, const Indices& chosen) {
   return spread(1) > 1e-8 * spread(2) && spread(2) > 1e-20 * mean.squaredNorm();
 }
 
-// The first `kSample` of `order` become a random sample of it.
+// The first `sample_size` of `order` become a random sample of it.
 void drawSample(Indices* order, std::mt19937_64* random) {
-  for (std::size_t k = 0; k < kSample; ++k) {
+  for (std::size_t k = 0; k < sample_size; ++k) {
     std::swap((*order)[k], (*order)[k + (*random)() % (order->size() - k)]);
   }
 }
 
 // Iterations after which RANSAC has seen a sample of inliers alone with the confidence asked for.
 double iterationsNeeded(std::size_t inliers, std::size_t all) {
-  const double share = std::pow(static_cast<double>(inliers) / static_cast<double>(all), kSample);
-  return share >= 1 ? 1.0 : std::log(1 - kConfidence) / std::log1p(-share);
+  const double share = std::pow(static_cast<double>(inliers) / static_cast<double>(all), sample_size);
+  return share >= 1 ? 1.0 : std::log(1 - ransac_confidence) / std::log1p(-share);
 }
 
 // RANSAC on minimal samples: P3P, the pose with the most inliers. EPnP itself needs more points, and fails on samples
@@ -121,7 +121,7 @@ Pose sampleConsensus(const Points& points, const Points& bearings, const Indices
 Pose overConsensus(const Pose& pose, const Points& points, const Points& bearings, const Indices& usable,
                    double threshold) {
   const Indices inliers = within(pose, points, bearings, usable, threshold);
-  if (inliers.size() < kLeastPoints) return pose;
+  if (inliers.size() < least_points) return pose;
   const Normalized consensus = normalized(points, bearings, inliers);
   cv::Mat rotation_vector, translation;
   cv::solvePnP(consensus.points, consensus.pixels, cv::Matx33d::eye(), cv::noArray(), rotation_vector, translation,
@@ -164,7 +164,7 @@ BearingSystem bearingSystem(const Pose& pose, const Points& points, const Points
 Pose refine(Pose pose, const Points& points, const Points& bearings, const Indices& among, double width) {
   double damping = 1e-6;
   BearingSystem system = bearingSystem(pose, points, bearings, among, width);
-  for (int iteration = 0; iteration < kRefinements; ++iteration) {
+  for (int iteration = 0; iteration < most_refinements; ++iteration) {
     Matrix6d damped = system.hessian;
     damped.diagonal() += damping * (system.hessian.diagonal().array() + 1e-12).matrix();
     const Vector6d step = -damped.ldlt().solve(system.gradient);
@@ -195,9 +195,9 @@ ResectioningResult resectionFrom(Consensus consensus, const Points& points, cons
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite() || !bearings[i].allFinite()) continue;
     finite.push_back(i);
-    if (bearings[i].z() >= kLeastZ) usable.push_back(i);
+    if (bearings[i].z() >= least_z) usable.push_back(i);
   }
-  if (usable.size() < kLeastPoints || !spanPlane(points, usable)) return result;
+  if (usable.size() < least_points || !spanPlane(points, usable)) return result;
 
   Pose pose = sampleConsensus(points, bearings, usable, threshold, seed, iterations);
   if (consensus == Consensus::by_epnp) pose = overConsensus(pose, points, bearings, usable, threshold);
@@ -205,7 +205,7 @@ ResectioningResult resectionFrom(Consensus consensus, const Points& points, cons
   const Indices inliers = within(result.camera_T_world, points, bearings, finite, threshold);
   for (const std::size_t i : inliers) result.inliers[i] = 1;
   result.inlier_count = static_cast<int>(inliers.size());
-  result.found = inliers.size() >= kLeastPoints && spanPlane(points, inliers);
+  result.found = inliers.size() >= least_points && spanPlane(points, inliers);
   return result;
 }
 

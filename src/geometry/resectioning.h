@@ -27,7 +27,8 @@ struct ResectioningResult {
 ResectioningResult resection(const Vectors3& points, const Vectors3& bearings, double threshold, std::uint64_t seed,
                              int iterations = 200);
 
-// The same without EPnP: least squares from the best sample's pose. Takes all memory from `memory`.
+// Like resection(), without EPnP: least squares from the pose of the best sample, which P3P gives. Takes all memory
+// from `memory`.
 ResectioningResult resectionBySamples(const Vectors3& points, const Vectors3& bearings, double threshold,
                                       std::uint64_t seed, int iterations, std::pmr::memory_resource* memory);
 

@@ -1,17 +1,18 @@
-// P7: a correspondence in three views must lie, in the middle one, where the epipolar lines of the other two cross.
 // Worked out on planes through the middle camera's centre rather than on lines in its image, so that it holds for any
 // camera model: an epipolar line is such a plane, and two of them cross in a bearing.
+#include "geometry/three_view_check.h"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "geometry/epipolar.h"
+#include "geometry/angles.h"
 
 namespace edgeslam {
 namespace {
 
-const double kLeastCrossing = std::sin(2.0 * M_PI / 180);  // planes that cross at less are taken as parallel
+const double least_crossing = std::sin(radians(2));  // planes that cross at less are taken as parallel
 
 struct EpipolarPlane {
   bool exists = false;      // false without a baseline, or for a pixel at the epipole
@@ -69,7 +70,7 @@ double threeViewError(const Camera& camera, const Pose& world_T_first, const Pos
     return std::max(first_error, last_error);
   }
   Eigen::Vector3d crossing = first.normal.cross(last.normal);
-  if (crossing.norm() < kLeastCrossing) {
+  if (crossing.norm() < least_crossing) {
     return std::max(distanceToPlane(camera, first.normal, middle), distanceToPlane(camera, last.normal, middle));
   }
   if (crossing.dot(bearing(camera, middle.pixel)) < 0) crossing = -crossing;

@@ -7,10 +7,10 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kSamples = 16;                   // depths tried for a start
-constexpr double kLargestParallax = M_PI / 3;  // of the nearest depth tried [rad]
-constexpr double kHuber = 3.0;  // whitened error beyond which a view counts linearly in the choice of the start
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int start_samples = 16;              // depths tried for a start
+constexpr double largest_parallax = M_PI / 3;  // of the nearest depth tried [rad]
+constexpr double huber_error = 3.0;  // whitened error beyond which a view counts linearly in the choice of the start
 
 // One view's whitened residual and its derivative by the inverse depth.
 struct Residual {
@@ -60,12 +60,12 @@ NormalEquation accumulate(const Camera& camera, const Eigen::Vector3d& host_bear
   for (const TriangulationView& view : views) {
     Residual residual;
     if (!evaluate(camera, host_bearing, view, inverse_depth, &residual)) {
-      sum.cost = sum.robust_cost = sum.largest_error = kInfinity;
+      sum.cost = sum.robust_cost = sum.largest_error = infinity;
       return sum;
     }
     const double squared = residual.error.squaredNorm(), error = std::sqrt(squared);
     sum.cost += squared;
-    sum.robust_cost += error < kHuber ? squared : kHuber * (2 * error - kHuber);
+    sum.robust_cost += error < huber_error ? squared : huber_error * (2 * error - huber_error);
     sum.gradient += residual.derivative.dot(residual.error);
     sum.information += residual.derivative.squaredNorm();
     sum.largest_error = std::max(sum.largest_error, error);
@@ -87,10 +87,10 @@ double bestStart(const Camera& camera, const Eigen::Vector3d& host_bearing,
     angle = std::atan2(across, host_bearing.dot(centre));
   }
   if (!(widest > 0)) return -1;
-  double best = -1, best_cost = kInfinity;
-  for (int i = 0; i < kSamples; ++i) {
-    const double share = static_cast<double>(i) / (kSamples - 1);
-    const double parallax = share * share * std::min(kLargestParallax, 0.95 * (M_PI - angle));
+  double best = -1, best_cost = infinity;
+  for (int i = 0; i < start_samples; ++i) {
+    const double share = static_cast<double>(i) / (start_samples - 1);
+    const double parallax = share * share * std::min(largest_parallax, 0.95 * (M_PI - angle));
     const double inverse_depth = std::sin(parallax) / (baseline * std::sin(angle + parallax));  // law of sines
     const double cost = accumulate(camera, host_bearing, views, inverse_depth).robust_cost;
     if (!(cost < best_cost)) continue;
@@ -116,7 +116,7 @@ double largestParallax(const Eigen::Vector3d& host_bearing, const std::vector<Tr
 TriangulationResult triangulate(const Camera& camera, const Eigen::Vector3d& host_bearing,
                                 const std::vector<TriangulationView>& views, double initial_inverse_depth) {
   TriangulationResult result;
-  result.sigma = result.largest_error = kInfinity;
+  result.sigma = result.largest_error = infinity;
   double inverse_depth = initial_inverse_depth > 0 ? initial_inverse_depth : bestStart(camera, host_bearing, views);
   if (!(inverse_depth >= 0) || !std::isfinite(inverse_depth)) return result;
   NormalEquation at = accumulate(camera, host_bearing, views, inverse_depth);
@@ -141,7 +141,7 @@ TriangulationResult triangulate(const Camera& camera, const Eigen::Vector3d& hos
   }
 
   result.inverse_depth = inverse_depth;
-  result.sigma = at.information > 0 ? 1.0 / std::sqrt(at.information) : kInfinity;
+  result.sigma = at.information > 0 ? 1.0 / std::sqrt(at.information) : infinity;
   result.parallax = largestParallax(host_bearing, views, inverse_depth);
   result.largest_error = at.largest_error;
   result.converged = at_minimum && inverse_depth > 0;

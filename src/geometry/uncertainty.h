@@ -22,7 +22,7 @@ inline Matrix7d updateCarrying(const Pose& a_T_b) {
   return carry;
 }
 
-// Of camera b, which is where it is by being known relative to camera a.
+// Uncertainty of camera b, which is where it is by being known relative to camera a, from that of a.
 inline Matrix7d carriedUncertainty(const Matrix7d& of_a, const Pose& a_T_b) {
   const Matrix7d carry = updateCarrying(a_T_b);
   return carry * of_a * carry.transpose();

@@ -32,7 +32,7 @@ using Doubles = hn::CappedTag<double, 8>;
 using Vector = hn::Vec<Doubles>;
 using Mask = hn::Mask<Doubles>;
 
-constexpr int kMostIterations = 20;
+constexpr int most_iterations = 20;
 
 Vector set(double value) { return hn::Set(Doubles(), value); }
 Mask isFinite(Vector value) { return hn::Le(hn::Abs(value), set(std::numeric_limits<double>::max())); }
@@ -45,7 +45,7 @@ void undistortRadialTangential(const std::array<double, 5>& k, Vector& u, Vector
   const double k1 = k[0], k2 = k[1], p1 = k[2], p2 = k[3], k3 = k[4];
   const Vector distorted_x = u, distorted_y = v;
   Mask active = isFinite(set(0));
-  for (int i = 0; i < kMostIterations; ++i) {
+  for (int i = 0; i < most_iterations; ++i) {
     const Vector x = u, y = v;
     const Vector twice_x = Add(x, x), twice_y = Add(y, y);
     const Vector r2 = Add(Mul(x, x), Mul(y, y));
@@ -76,7 +76,7 @@ Vector undistortAngle(const std::array<double, 5>& k, Vector distorted) {
   using hn::Mul;
   Vector theta = distorted;
   Mask active = isFinite(set(0));
-  for (int i = 0; i < kMostIterations; ++i) {
+  for (int i = 0; i < most_iterations; ++i) {
     const Vector t2 = Mul(theta, theta);
     const Vector inner = Add(set(7 * k[2]), Mul(Mul(t2, set(9)), set(k[3])));
     const Vector derivative = Add(set(1), Mul(t2, Add(set(3 * k[0]), Mul(t2, Add(set(5 * k[1]), Mul(t2, inner))))));

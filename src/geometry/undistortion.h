@@ -11,7 +11,7 @@ namespace edgeslam {
 // The bearing (unit vector, camera frame) of each of `count` pixels: what bearing() gives, to the last bit.
 void bearingsOf(const Camera& camera, const Eigen::Vector2d* pixels, std::size_t count, Eigen::Vector3d* bearings);
 
-// The same, one pixel after the other.
+// What bearingsOf gives, one pixel after the other.
 void bearingsReference(const Camera& camera, const Eigen::Vector2d* pixels, std::size_t count,
                        Eigen::Vector3d* bearings);
 

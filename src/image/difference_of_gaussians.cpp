@@ -137,7 +137,7 @@ HWY_INLINE RowSums sumAlongRow(const int16_t* HWY_RESTRICT upper, const int16_t*
 
 // What the parts are worth in the end. Of a kernel that sums to 1 << 16, a column's sum of S is upper * 2^16 + lower +
 // 2^15, and along the row the sum is A * 2^16 + B + 2^31 for the sums A and B of the parts.
-struct GreyBlur {  // of pixels times kBlurScale, 2^7: rounded to 2^-25 of the sum
+struct GreyBlur {  // of pixels times blur_scale, 2^7: rounded to 2^-25 of the sum
   static WideVector round(WideVector upper, WideVector lower) {
     const auto sum = hn::Add(hn::Add(upper, hn::ShiftRight<16>(lower)), hn::Set(Wide(), 1 << 8));
     return hn::Add(hn::ShiftRight<9>(sum), hn::Set(Wide(), 1 << 6));

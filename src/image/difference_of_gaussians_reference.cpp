@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -22,13 +23,13 @@ void blurRow(const cv::Mat& image, uint64_t scale, const FixedGaussian& gaussian
     const auto* from = image.ptr<Pixel>(std::clamp(y + k, 0, image.rows - 1));
     for (int x = 0; x < image.cols; ++x) columns[static_cast<size_t>(x)] += weightOf(gaussian, k) * scale * from[x];
   }
-  constexpr int kShift = 2 * kWeightBits;
+  constexpr int shift = 2 * weight_bits;
   for (int x = 0; x < image.cols; ++x) {
-    uint64_t sum = uint64_t{1} << (kShift - 1);
+    uint64_t sum = uint64_t{1} << (shift - 1);
     for (int k = -radius; k <= radius; ++k) {
       sum += weightOf(gaussian, k) * columns[static_cast<size_t>(std::clamp(x + k, 0, image.cols - 1))];
     }
-    row[x] = static_cast<uint16_t>(sum >> kShift);
+    row[x] = static_cast<uint16_t>(sum >> shift);
   }
 }
 
@@ -36,6 +37,7 @@ void blurRow(const cv::Mat& image, uint64_t scale, const FixedGaussian& gaussian
 
 void prepareDifferenceOfGaussians(const cv::Size& size, double sigma, double sigma_ratio,
                                   DifferenceOfGaussians& result) {
+  assert(sigma >= 0 && sigma_ratio >= 1);
   if (sigma != result.sigma || sigma_ratio != result.sigma_ratio) {
     result.sigma = sigma;
     result.sigma_ratio = sigma_ratio;
@@ -57,7 +59,7 @@ void differenceOfGaussiansReference(const cv::Mat& grey, double sigma, double si
   CV_Assert(grey.type() == CV_8U && !grey.empty());
   prepareDifferenceOfGaussians(grey.size(), sigma, sigma_ratio, result);
   for (int y = 0; y < grey.rows; ++y) {
-    blurRow<uint8_t>(grey, kBlurScale, result.to_narrow, y, result.sums, result.narrow.ptr<uint16_t>(y));
+    blurRow<uint8_t>(grey, blur_scale, result.to_narrow, y, result.sums, result.narrow.ptr<uint16_t>(y));
   }
   for (int y = 0; y < grey.rows; ++y) {
     auto* dog = result.dog.ptr<uint16_t>(y);

@@ -1,6 +1,7 @@
 #include "image/fixed_gaussian.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -8,7 +9,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kLeastSigma = 0.05;  // narrower than this a Gaussian is a single pixel [px]
+constexpr double least_sigma = 0.05;  // narrower than this a Gaussian is a single pixel [px]
 
 int32_t pairOf(int32_t first, int32_t second) {
   const auto low = static_cast<uint32_t>(first) & 0xFFFF;
@@ -34,8 +35,9 @@ FixedGaussian withPairs(std::vector<int32_t> weights) {
 }  // namespace
 
 FixedGaussian fixedGaussian(double sigma) {
-  constexpr int32_t kOne = 1 << kWeightBits;
-  if (sigma < kLeastSigma) return withPairs({kOne});
+  assert(sigma >= 0);
+  constexpr int32_t one = 1 << weight_bits;
+  if (sigma < least_sigma) return withPairs({one});
   const int radius = std::max(1, static_cast<int>(std::lround(2.9 * sigma)));
   std::vector<double> heights;
   double sum = 1;
@@ -43,10 +45,10 @@ FixedGaussian fixedGaussian(double sigma) {
     heights.push_back(std::exp(-0.5 * k * k / (sigma * sigma)));
     sum += 2 * heights.back();
   }
-  std::vector<int32_t> weights(static_cast<size_t>(radius) + 1, kOne);
+  std::vector<int32_t> weights(static_cast<size_t>(radius) + 1, one);
   double left_over = 0;
   for (int k = radius; k > 0; --k) {
-    const double wanted = heights[static_cast<size_t>(radius - k)] / sum * kOne + left_over;
+    const double wanted = heights[static_cast<size_t>(radius - k)] / sum * one + left_over;
     const auto weight = static_cast<int32_t>(std::lround(wanted));
     left_over = wanted - weight;
     weights[static_cast<size_t>(k)] = weight;

@@ -6,9 +6,9 @@
 
 namespace edgeslam {
 
-constexpr int kWeightBits = 16;  // all weights of a kernel, both sides, sum up to 1 << kWeightBits
+constexpr int weight_bits = 16;  // all weights of a kernel, both sides, sum up to 1 << weight_bits
 
-// weights[k] is that of the pixels k away from the centre; {1 << kWeightBits} is no blur at all.
+// weights[k] is that of the pixels k away from the centre; {1 << weight_bits} is no blur at all.
 struct FixedGaussian {
   std::vector<int32_t> weights;
 
@@ -22,8 +22,8 @@ struct FixedGaussian {
   int radius() const { return static_cast<int>(weights.size()) - 1; }  // [px]
 };
 
-// Of standard deviation `sigma` >= 0 [px], cut off where it falls below 1.5 % of its height. What rounding takes from
-// one weight the next one nearer to the centre is given.
+// The Gaussian of standard deviation `sigma` >= 0 [px], cut off where it falls below 1.5 % of its height. What rounding
+// takes from one weight the next one nearer to the centre is given.
 FixedGaussian fixedGaussian(double sigma);
 
 }  // namespace edgeslam

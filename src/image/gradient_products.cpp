@@ -1,5 +1,6 @@
 #include "image/gradient_products.h"
 
+#include <cassert>
 #include <cstddef>
 
 #undef HWY_TARGET_INCLUDE
@@ -39,10 +40,10 @@ struct Sum {
 
 // True where every vector of a row and its neighbours to all sides lie in the image, and no sum grows too large.
 bool fitsVectors(const cv::Size& size, const cv::Rect& window, int lanes) {
-  constexpr int kMostPixels = 1 << 15;  // (2^15)(255^2) < 2^31
+  constexpr int most_pixels = 1 << 15;  // (2^15)(255^2) < 2^31
   const int width = (window.width + lanes - 1) / lanes * lanes;
   return window.x > 0 && window.y > 0 && window.x + width < size.width && window.y + window.height < size.height &&
-         window.area() <= kMostPixels;
+         window.area() <= most_pixels;
 }
 
 GradientProducts sumVectors(const cv::Mat& grey, const cv::Rect& window) {
@@ -90,6 +91,7 @@ namespace edgeslam {
 HWY_EXPORT(sumVectors);
 
 GradientProducts gradientProducts(const cv::Mat& grey, const cv::Rect& window) {
+  assert(grey.type() == CV_8U && (window & cv::Rect({}, grey.size())) == window);
   return HWY_DYNAMIC_DISPATCH(sumVectors)(grey, window);
 }
 

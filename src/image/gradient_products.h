@@ -15,10 +15,10 @@ struct GradientProducts {
   int count = 0;  // of pixels
 };
 
-// Over the pixels of `window`, which lies in `grey` (CV_8U).
+// Sums over the pixels of `window`, which lies in `grey` (CV_8U).
 GradientProducts gradientProducts(const cv::Mat& grey, const cv::Rect& window);
 
-// The same, one pixel after the other.
+// What gradientProducts gives, one pixel after the other.
 GradientProducts gradientProductsReference(const cv::Mat& grey, const cv::Rect& window);
 
 }  // namespace edgeslam

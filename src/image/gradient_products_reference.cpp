@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <cassert>
 
 #include "image/gradient_products.h"
 
 namespace edgeslam {
 
 GradientProducts gradientProductsReference(const cv::Mat& grey, const cv::Rect& window) {
+  assert(grey.type() == CV_8U && (window & cv::Rect({}, grey.size())) == window);
   GradientProducts products;
   products.count = window.area();
   for (int y = window.y; y < window.y + window.height; ++y) {

@@ -22,7 +22,8 @@ void halveVectors(const cv::Mat& finer, cv::Mat& coarser) { halveReference(finer
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr size_t kBlock = 512;  // pixels of a coarser row at a time: what they need stays in the nearest cache [px]
+// Pixels of a coarser row at a time: what they need stays in the nearest cache [px].
+constexpr size_t block_width = 512;
 
 // Sums of 5 rows (1 4 6 4 1) at `centre` for `count` pairs of neighbouring pixels: of the first of each, and of the
 // second. May write and read up to a vector more.
@@ -66,15 +67,15 @@ void sumRow(const uint16_t* HWY_RESTRICT even, const uint16_t* HWY_RESTRICT odd,
 }
 
 void halveVectors(const cv::Mat& finer, cv::Mat& coarser) {
-  constexpr size_t kSlack = 2 + HWY_MAX_BYTES / sizeof(uint16_t);
-  HWY_ALIGN uint16_t even[kBlock + 2 * kSlack];
-  HWY_ALIGN uint16_t odd[kBlock + 2 * kSlack];
-  HWY_ALIGN uint8_t row[kBlock + kSlack];
+  constexpr size_t slack = 2 + HWY_MAX_BYTES / sizeof(uint16_t);
+  HWY_ALIGN uint16_t even[block_width + 2 * slack];
+  HWY_ALIGN uint16_t odd[block_width + 2 * slack];
+  HWY_ALIGN uint8_t row[block_width + slack];
   const auto step = static_cast<std::ptrdiff_t>(finer.step[0]);
   const auto width = static_cast<size_t>(coarser.cols);
   for (int y = 0; y < coarser.rows; ++y) {
-    for (size_t x = 0; x < width; x += kBlock) {
-      const size_t count = std::min(kBlock, width - x);
+    for (size_t x = 0; x < width; x += block_width) {
+      const size_t count = std::min(block_width, width - x);
       sumColumns(finer.ptr<uint8_t>(2 * y) + 2 * x - 2, step, count + 2, even, odd);
       sumRow(even, odd, count, row);
       std::memcpy(coarser.ptr<uint8_t>(y) + x, row, count);

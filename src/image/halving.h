@@ -15,7 +15,7 @@ inline cv::Size halfOf(const cv::Size& size) { return {(size.width + 1) / 2, (si
 // halving_border pixels around it, of which the two nearest count. Rounded to the nearest grey value.
 void halve(const cv::Mat& finer, cv::Mat& coarser);
 
-// The same, one pixel after the other.
+// What halve() gives, one pixel after the other.
 void halveReference(const cv::Mat& finer, cv::Mat& coarser);
 
 }  // namespace edgeslam

@@ -18,7 +18,7 @@ struct ImagePyramid {
 // its levels sees them change. `grey` may not be one of them.
 void buildPyramid(const cv::Mat& grey, int level_count, ImagePyramid& pyramid);
 
-// The same in memory of its own.
+// A pyramid in memory of its own.
 ImagePyramid buildPyramid(const cv::Mat& grey, int level_count);
 
 }  // namespace edgeslam

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "geometry/median.h"
+
 namespace edgeslam {
 namespace {
 
@@ -19,10 +21,7 @@ double scaleAround(const Map& before, const Map& after, KeyframeId keyframe) {
     const double old_distance = distance(before, old_point->second);
     if (old_distance > 0) ratios.push_back(distance(after, new_point->second) / old_distance);
   }
-  if (ratios.empty()) return 1;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return *middle;
+  return ratios.empty() ? 1 : upperMedian(ratios);
 }
 
 Similarity moveOfLatest(const Map& before, const Map& after) {

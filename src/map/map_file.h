@@ -38,8 +38,8 @@ struct SavedMap {
   Map map;
 };
 
-// The same bytes for the same map. Of a keyframe's images only level 0 is written, without loss; images must be CV_8U.
-// What mapProblem (map/map_check.h) finds wrong is written all the same, and refused by decodeMap.
+// Encodes a map, the same one to the same bytes. Of a keyframe's images only level 0 is written, without loss; images
+// must be CV_8U. What mapProblem (map/map_check.h) finds wrong is written all the same, and refused by decodeMap.
 std::string encodeMap(const SavedMap& saved);
 
 // The map of which `bytes` are the encoding, every number to the last bit and the pyramids built anew. `name` (of the

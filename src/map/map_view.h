@@ -79,7 +79,7 @@ MapView flatView(const TrackedFrame& first);
 
 // Gives a view memory for what tracking adds to it until the next one comes: keyframes, or the points of a new start.
 void reserveForTracking(MapView& view);
-// The same into a view that was used before, with its memory.
+// Writes flatView(first) into a view that was used before, with its memory.
 void makeFlatView(const TrackedFrame& first, MapView& view);
 
 }  // namespace edgeslam

@@ -1,6 +1,7 @@
 #include "mapping/culling.h"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 
 namespace edgeslam {
@@ -122,6 +123,7 @@ std::size_t memoryOf(const Map& map) {
 std::vector<CulledKeyframe> cullKeyframes(const CullingOptions& options, Map& map, Candidates& candidates) {
   std::vector<CulledKeyframe> culled;
   if (!options.enabled) return culled;
+  assert(!map.keyframes.empty());
   for (const KeyframeId id : redundantKeyframes(options, map)) {
     const Need need = needFor(options, map, map.keyframes[id]);  // others that went may have left it needed
     if (need.replaceable < options.redundant_share * need.points) continue;

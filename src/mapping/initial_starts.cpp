@@ -1,146 +1,144 @@
-// The starts that the initialisation tries (P14 and design, section 5): what tracking followed against a flat map, the
-// five-point algorithm, and steady motions along the axes.
-#include <algorithm>
-#include <cmath>
+#include "mapping/initial_starts.h"
 
-#include "adjustment/pose_adjustment.h"
+#include <algorithm>
+#include <optional>
+#include <utility>
+
 #include "geometry/epipolar.h"
+#include "geometry/median.h"
+#include "geometry/relative_rotation.h"
 #include "geometry/triangulation.h"
-#include "mapping/initialisation.h"
 #include "mapping/points_seen_by_both.h"
 
 namespace edgeslam {
+namespace {
 
-std::vector<InitialStructure> Initialisation::rivals() const {
-  std::vector<InitialStructure> structures;
-  const auto corners = std::count_if(frames_.back().observations.begin(), frames_.back().observations.end(),
-                                     [](const PointObservation& o) { return o.corner; });
-  if (corners >= options_.five_point_corners) structures.push_back(fivePointStart());
-  structures.push_back(directionStart({0, 0, 1}, "forward"));
-  structures.push_back(directionStart({1, 0, 0}, "rightward"));
-  structures.push_back(directionStart({-1, 0, 0}, "leftward"));
-  structures.push_back(directionStart({0, 1, 0}, "downward"));
-  structures.push_back(directionStart({0, -1, 0}, "upward"));
-  return structures;
+constexpr std::size_t fewest_depths = 20;
+constexpr double largest_depth_sigma = 0.5;  // share of the inverse depth
+
+InitialStart startOf(std::string method, const InitialFrames& frames, const InitialisationOptions& options) {
+  InitialStart start;
+  start.method = std::move(method);
+  start.frames = spreadFrames(frames, options.frames_between + 1);
+  return start;
 }
 
-// What tracking followed against the flat map, freed and adjusted.
-InitialStructure Initialisation::followedStart() const {
-  InitialStructure structure;
-  structure.method = "flat start";
-  structure.frames = chooseFrames();
-  for (const std::size_t frame : structure.frames) structure.first_T_camera.push_back(frames_[frame].world_T_camera);
-  structure.inverse_depths = inverse_depths_;
-  return adjust(std::move(structure));
+// The inverse depth that these views tell of a point; 0 where they tell too little.
+double triangulatedInverseDepth(const Camera& camera, const PointObservation& first,
+                                const std::vector<TriangulationView>& views) {
+  const TriangulationResult point = triangulate(camera, first.bearing, views);
+  if (!point.converged || point.sigma > largest_depth_sigma * point.inverse_depth) return 0;
+  return point.inverse_depth;
 }
 
-// P14: the pose of the current frame by the five-point algorithm, depths by triangulation, the frames between by their
-// points.
-InitialStructure Initialisation::fivePointStart() const {
-  InitialStructure structure;
-  structure.method = "five-point";
-  const TrackedFrame& current = frames_.back();
+// Brings the median of the positive inverse depths to 1 and gives that to the other points. Returns what translations
+// must be multiplied by; nothing where too few points have a depth.
+std::optional<double> bringMedianToOne(std::vector<double>& inverse_depths) {
+  std::vector<double> known;
+  std::copy_if(inverse_depths.begin(), inverse_depths.end(), std::back_inserter(known), [](double d) { return d > 0; });
+  if (known.size() < fewest_depths) return std::nullopt;
+  const double scale = upperMedian(known);
+  for (double& inverse_depth : inverse_depths) inverse_depth = inverse_depth > 0 ? inverse_depth / scale : 1.0;
+  return scale;
+}
+
+RelativePose relativePoseOfCorners(const Camera& camera, const TrackedFrame& first, const TrackedFrame& current) {
   std::vector<Eigen::Vector3d> first_bearings, current_bearings;
-  forEachCommon(first_, current, [&](std::size_t i, std::size_t j) {
-    if (!first_.observations[i].corner) return;
-    first_bearings.push_back(first_.observations[i].bearing);
+  forEachCommon(first, current, [&](std::size_t i, std::size_t j) {
+    if (!first.observations[i].corner) return;
+    first_bearings.push_back(first.observations[i].bearing);
     current_bearings.push_back(current.observations[j].bearing);
   });
-  const RelativePose relative =
-      relativePose(first_bearings, current_bearings, 1.0 / meanFocalLength(camera_), /*seed=*/1);
-  if (!relative.found) return structure;
+  return relativePose(first_bearings, current_bearings, 1.0 / meanFocalLength(camera), /*seed=*/1);
+}
 
-  structure.inverse_depths.assign(first_.observations.size(), 0.0);
-  std::vector<double> depths;
-  forEachCommon(first_, current, [&](std::size_t i, std::size_t j) {
-    const TriangulationResult point = triangulate(camera_, first_.observations[i].bearing,
-                                                  {{relative.second_T_first, current.observations[j].measurement}});
-    if (!point.converged || point.sigma > 0.5 * point.inverse_depth) return;
-    structure.inverse_depths[i] = point.inverse_depth;
-    depths.push_back(point.inverse_depth);
+// The pose of the current frame by the five-point algorithm, depths by triangulation, the poses of the frames between
+// by their points.
+std::optional<InitialStart> fivePointStart(const Camera& camera, const InitialFrames& frames,
+                                           const InitialisationOptions& options) {
+  const TrackedFrame &first = frames.first, &current = frames.current();
+  const RelativePose relative = relativePoseOfCorners(camera, first, current);
+  if (!relative.found) return std::nullopt;
+
+  InitialStart start = startOf("five-point", frames, options);
+  start.inverse_depths.assign(first.observations.size(), 0.0);
+  forEachCommon(first, current, [&](std::size_t i, std::size_t j) {
+    start.inverse_depths[i] = triangulatedInverseDepth(
+        camera, first.observations[i], {{relative.second_T_first, current.observations[j].measurement}});
   });
-  if (depths.size() < 20) return structure;
-  const double scale = median(depths);  // brings the median inverse depth to 1
-  for (double& inverse_depth : structure.inverse_depths)
-    inverse_depth = inverse_depth > 0 ? inverse_depth / scale : 1.0;
+  const std::optional<double> scale = bringMedianToOne(start.inverse_depths);
+  if (!scale) return std::nullopt;
 
-  Pose last_first_T_camera;
-  const Pose current_first_T_camera = [&] {
-    Pose pose = relative.second_T_first.inverse();
-    pose.translation *= scale;
-    return pose;
-  }();
-  structure.frames = chooseFrames();
-  for (const std::size_t frame : structure.frames) {
-    PoseObservations observations;
-    forEachCommon(first_, frames_[frame], [&](std::size_t i, std::size_t j) {
-      PoseObservation observation;
-      observation.point = first_.observations[i].bearing / structure.inverse_depths[i];
-      observation.measurement = frames_[frame].observations[j].measurement;
-      observations.push_back(observation);
-    });
-    const bool is_current = frame + 1 == frames_.size();
-    const PoseResult pose =
-        adjustPose(camera_, is_current ? current_first_T_camera : last_first_T_camera, observations, PoseOptions());
-    if (!pose.converged) return structure;
-    structure.first_T_camera.push_back(pose.world_T_camera);
-    last_first_T_camera = pose.world_T_camera;
+  Pose first_T_current = relative.second_T_first.inverse();
+  first_T_current.translation *= *scale;
+  Pose before;
+  for (const std::size_t frame : start.frames) {
+    const bool is_current = frame + 1 == frames.since.size();
+    const std::optional<Pose> pose =
+        locateAgainst(camera, first, start.inverse_depths, frames.since[frame], is_current ? first_T_current : before);
+    if (!pose) return std::nullopt;
+    start.first_T_camera.push_back(*pose);
+    before = *pose;
   }
-  return adjust(std::move(structure));
+  return start;
 }
 
-// A camera that moved steadily in one direction of the first frame, turning as the points' bearings say; depths by
-// triangulation.
-InitialStructure Initialisation::directionStart(const Eigen::Vector3d& direction, const char* name) const {
-  InitialStructure structure;
-  structure.method = std::string(name) + " start";
-  structure.frames = chooseFrames();
-  std::vector<double> lengths;
-  for (const std::size_t k : structure.frames) {
-    std::vector<Eigen::Vector3d> first, other;
-    forEachCommon(first_, frames_[k], [&](std::size_t i, std::size_t j) {
-      first.push_back(first_.observations[i].bearing);
-      other.push_back(frames_[k].observations[j].bearing);
-    });
-    if (first.size() < 8) return structure;
-    const RelativeRotation rotation = relativeRotation(first, other);
-    lengths.push_back(rotation.median_error);
-    structure.first_T_camera.push_back(Pose{rotation.rotation.conjugate(), Eigen::Vector3d::Zero()});
-  }
-  for (std::size_t k = 0; k < lengths.size(); ++k) structure.first_T_camera[k].translation = lengths[k] * direction;
-
-  std::vector<std::vector<TriangulationView>> views(first_.observations.size());
-  for (std::size_t k = 0; k < structure.frames.size(); ++k) {
-    const TrackedFrame& frame = frames_[structure.frames[k]];
-    forEachCommon(first_, frame, [&](std::size_t i, std::size_t j) {
-      views[i].push_back({structure.first_T_camera[k].inverse(), frame.observations[j].measurement});
+// A camera that moved steadily in one direction (unit, of the first frame's camera), turning as the points' bearings
+// say; depths by triangulation.
+std::optional<InitialStart> steadyMotionStart(const Camera& camera, const InitialFrames& frames,
+                                              const Eigen::Vector3d& direction, const char* name,
+                                              const InitialisationOptions& options) {
+  constexpr std::size_t fewest_common = 8;
+  const TrackedFrame& first = frames.first;
+  InitialStart start = startOf(std::string(name) + " start", frames, options);
+  std::vector<std::vector<TriangulationView>> views(first.observations.size());
+  for (const std::size_t k : start.frames) {
+    const TrackedFrame& frame = frames.since[k];
+    const CommonBearings bearings = commonBearings(first, frame);
+    if (bearings.in_first.size() < fewest_common) return std::nullopt;
+    const RelativeRotation rotation = relativeRotation(bearings.in_first, bearings.in_other);
+    // As far as the points moved beyond what the rotation explains; the unit comes from the depths below.
+    const Pose first_T_camera{rotation.rotation.conjugate(), rotation.median_error * direction};
+    start.first_T_camera.push_back(first_T_camera);
+    forEachCommon(first, frame, [&](std::size_t i, std::size_t j) {
+      views[i].push_back({first_T_camera.inverse(), frame.observations[j].measurement});
     });
   }
-  structure.inverse_depths.assign(first_.observations.size(), 0.0);
-  std::vector<double> depths;
+  start.inverse_depths.assign(first.observations.size(), 0.0);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (views[i].empty()) continue;
-    const TriangulationResult point = triangulate(camera_, first_.observations[i].bearing, views[i]);
-    if (!point.converged || point.inverse_depth <= 0 || point.sigma > 0.5 * point.inverse_depth) continue;
-    structure.inverse_depths[i] = point.inverse_depth;
-    depths.push_back(point.inverse_depth);
+    if (!views[i].empty()) start.inverse_depths[i] = triangulatedInverseDepth(camera, first.observations[i], views[i]);
   }
-  if (depths.size() < 20) return structure;
-  const double scale = median(depths);
-  for (double& inverse_depth : structure.inverse_depths)
-    inverse_depth = inverse_depth > 0 ? inverse_depth / scale : 1.0;
-  for (Pose& pose : structure.first_T_camera) pose.translation *= scale;
-  return adjust(std::move(structure));
+  const std::optional<double> scale = bringMedianToOne(start.inverse_depths);
+  if (!scale) return std::nullopt;
+  for (Pose& pose : start.first_T_camera) pose.translation *= *scale;
+  return start;
 }
 
-std::vector<std::size_t> Initialisation::chooseFrames() const {
-  std::vector<std::size_t> chosen;
-  const auto count = static_cast<std::size_t>(options_.frames_between) + 1;
-  for (std::size_t k = 1; k <= count; ++k) {
-    const std::size_t frame = frames_.size() * k / count;
-    if (frame >= 1 && (chosen.empty() || chosen.back() != frame - 1)) chosen.push_back(frame - 1);
-  }
-  return chosen;
+}  // namespace
+
+InitialStart followedStart(const InitialFrames& frames, const std::vector<double>& provisional_inverse_depths,
+                           const InitialisationOptions& options) {
+  InitialStart start = startOf("flat start", frames, options);
+  for (const std::size_t frame : start.frames) start.first_T_camera.push_back(frames.since[frame].world_T_camera);
+  start.inverse_depths = provisional_inverse_depths;
+  return start;
+}
+
+std::vector<InitialStart> rivalStarts(const Camera& camera, const InitialFrames& frames,
+                                      const InitialisationOptions& options) {
+  std::vector<InitialStart> starts;
+  const auto add = [&](std::optional<InitialStart> start) {
+    if (start) starts.push_back(std::move(*start));
+  };
+  const std::vector<PointObservation>& seen = frames.current().observations;
+  const auto corners = std::count_if(seen.begin(), seen.end(), [](const PointObservation& o) { return o.corner; });
+  if (corners >= options.five_point_corners) add(fivePointStart(camera, frames, options));
+  add(steadyMotionStart(camera, frames, {0, 0, 1}, "forward", options));
+  add(steadyMotionStart(camera, frames, {1, 0, 0}, "rightward", options));
+  add(steadyMotionStart(camera, frames, {-1, 0, 0}, "leftward", options));
+  add(steadyMotionStart(camera, frames, {0, 1, 0}, "downward", options));
+  add(steadyMotionStart(camera, frames, {0, -1, 0}, "upward", options));
+  return starts;
 }
 
 }  // namespace edgeslam

@@ -1,6 +1,7 @@
 #include "mapping/local_adjustment.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace edgeslam {
 namespace {
@@ -72,6 +73,7 @@ int farthestFromFirst(const std::vector<BundleCamera>& cameras) {
 }  // namespace
 
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map) {
+  assert(!map.keyframes.empty());
   const std::vector<KeyframeId> free = covisibleKeyframes(map, options);
   // Keyframes that share most points with the free ones hold the gauge.
   std::vector<int> shared(numberOfKeyframes(map), 0);

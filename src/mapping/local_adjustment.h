@@ -12,7 +12,7 @@ struct LocalAdjustmentOptions {
   int free_keyframes = 8;        // the new one and its best covisible ones
   int fixed_keyframes = 20;      // most that only hold the gauge
   int covisible_points = 100;    // common points that make two keyframes covisible ...
-  double covisible_share = 0.3;  // ... or this share of the new keyframe's, where the scene has less
+  double covisible_share = 0.3;  // ... or this share of the most that any shares with the new one
   double outlier = 5.0;          // whitened; larger than noise allows: old points seen again after drift must stay in
   double largest_depth_sigma = 0.5;  // points whose depth is less certain than this share of it are taken out
   BundleOptions bundle{8, 2.0};
@@ -22,7 +22,8 @@ struct LocalAdjustmentOptions {
 // failed (the map is then as it was).
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map);
 
-// The same over the given keyframes; `fixed` ones only hold the gauge. False also where `interrupted` became true.
+// Adjusts the given keyframes and the points that they see; `fixed` ones only hold the gauge. False also where
+// `interrupted` became true.
 bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options, const std::vector<KeyframeId>& free,
                      const std::vector<KeyframeId>& fixed, Map& map, const std::atomic<bool>* interrupted = nullptr);
 

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "adjustment/pose_adjustment.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
 
 // Of a keyframe that nothing ties to another: all of the map's extent and any direction.
-constexpr double kUnknown = 1;
+constexpr double unknown_variance = 1;
 
 struct SharedPoints {
   PoseObservations observations;
@@ -44,12 +45,6 @@ void addSharedPoints(const Camera& camera, const Map& map, const Keyframe& keyfr
 
 double squared(double value) { return value * value; }
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // What the points that both see leave open of `keyframe` relative to `other`, and how far the way between them leads
 // astray.
 std::optional<Matrix7d> linkUncertainty(const Camera& camera, const MapUncertaintyOptions& options, const Map& map,
@@ -68,7 +63,7 @@ std::optional<Matrix7d> linkUncertainty(const Camera& camera, const MapUncertain
   if (!here) information = carry.transpose() * information * carry;
   const Eigen::LDLT<Matrix6d> factor(information);
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-3)) return std::nullopt;
-  const double depth = medianOf(more.distances);
+  const double depth = upperMedian(std::vector<double>(more.distances));
   const double way = keyframe_T_other.translation.norm() / depth +
                      rotationAngle(keyframe.world_T_camera.rotation, other.world_T_camera.rotation);
   Matrix7d link = Matrix7d::Zero();
@@ -105,7 +100,7 @@ Matrix7d through(const Map& map, const Keyframe& keyframe, KeyframeId other, con
 }
 
 Matrix7d unknownFrom(const Map& map, const Keyframe& keyframe, KeyframeId other) {
-  return through(map, keyframe, other, kUnknown * Matrix7d::Identity());
+  return through(map, keyframe, other, unknown_variance * Matrix7d::Identity());
 }
 
 // By keyframe number: those that it shares most points with, and those that it is one of the best for.

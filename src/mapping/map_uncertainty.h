@@ -23,11 +23,11 @@ struct MapUncertaintyOptions {
   double scale_walk = 0.03;
 };
 
-// Of the latest keyframe, from the others'.
+// Gives the latest keyframe its uncertainty, from the others'.
 void addUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map);
 
-// Of every keyframe anew: after a loop was closed, or of a map that was read. The first keyframe is the world's origin
-// and its scale the map's unit, so that its own is 0.
+// Gives every keyframe its uncertainty anew: after a loop was closed, or where the map was read from a file. The first
+// keyframe is the world's origin and its scale the map's unit, so that its own is 0.
 void renewUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map);
 
 }  // namespace edgeslam

@@ -1,8 +1,10 @@
 #include "mapping/new_points.h"
 
+#include <cassert>
 #include <cmath>
 
-#include "geometry/epipolar.h"
+#include "geometry/angles.h"
+#include "geometry/three_view_check.h"
 #include "geometry/triangulation.h"
 
 namespace edgeslam {
@@ -29,6 +31,7 @@ bool passesThreeViews(const Camera& camera, const Map& map, PointId id, const st
 }  // namespace
 
 void associate(Map& map, Candidates& candidates) {
+  assert(!map.keyframes.empty());
   const Keyframe& keyframe = map.keyframes.back();
   for (const PointObservation& observation : keyframe.observations) {
     const auto point = map.points.find(observation.point);
@@ -41,6 +44,7 @@ void associate(Map& map, Candidates& candidates) {
 }
 
 int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map, Candidates& candidates) {
+  assert(!map.keyframes.empty());
   int added = 0;
   const KeyframeId latest = map.keyframes.back().id;
   for (auto candidate = candidates.begin(); candidate != candidates.end();) {
@@ -64,7 +68,7 @@ int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map,
     const TriangulationResult depth = triangulate(camera, in_host.bearing, others);
     const bool good =
         depth.converged && depth.inverse_depth > 0 && depth.sigma < options.largest_depth_sigma * depth.inverse_depth &&
-        depth.parallax * 180.0 / M_PI > options.least_parallax_deg && depth.largest_error < options.largest_error;
+        degrees(depth.parallax) > options.least_parallax_deg && depth.largest_error < options.largest_error;
     if (!good) {
       ++candidate;
       continue;

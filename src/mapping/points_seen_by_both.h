@@ -1,8 +1,9 @@
-// The points that two tracked frames share, and medians of what they say.
+// The points that two tracked frames share.
 #pragma once
 
 #include <algorithm>
-#include <vector>
+#include <cassert>
+#include <cstddef>
 
 #include "map/keyframe.h"
 
@@ -11,19 +12,16 @@ namespace edgeslam {
 // Calls visit(index in first, index in other) for each point seen in both; both are sorted by point.
 template <typename Visit>
 void forEachCommon(const TrackedFrame& first, const TrackedFrame& other, Visit visit) {
+  [[maybe_unused]] const auto before = [](const PointObservation& a, const PointObservation& b) {
+    return a.point < b.point;
+  };
+  assert(std::is_sorted(first.observations.begin(), first.observations.end(), before));
+  assert(std::is_sorted(other.observations.begin(), other.observations.end(), before));
   std::size_t i = 0;
   for (std::size_t j = 0; j < other.observations.size(); ++j) {
     while (i < first.observations.size() && first.observations[i].point < other.observations[j].point) ++i;
     if (i < first.observations.size() && first.observations[i].point == other.observations[j].point) visit(i, j);
   }
-}
-
-// 0 of nothing.
-inline double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace edgeslam

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "geometry/epipolar.h"
+#include "geometry/median.h"
 #include "geometry/resectioning.h"
 #include "geometry/triangulation.h"
 #include "map/map.h"
@@ -47,13 +48,6 @@ std::vector<Track3> commonTracks(const Keyframe& first, const Keyframe& middle, 
   return common;
 }
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
@@ -66,7 +60,7 @@ double medianParallax(const std::vector<Track3>& tracks, const LocalStructure& l
     const Eigen::Vector3d point = tracks[i].middle->bearing / local.inverse_depths[i];
     angles.push_back(angleBetween(point, point - centre));
   }
-  return medianOf(std::move(angles));
+  return angles.empty() ? 0 : upperMedian(angles);
 }
 
 PoseObservations observationsInFirst(const std::vector<Track3>& tracks, const LocalStructure& local,

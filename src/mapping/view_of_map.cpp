@@ -1,7 +1,11 @@
 #include "mapping/view_of_map.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+
+#include "geometry/angles.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -13,10 +17,7 @@ double medianDepth(const Map& map, const Keyframe& keyframe) {
     if (point == map.points.end()) continue;
     depths.push_back((worldPosition(map, point->second) - keyframe.world_T_camera.translation).norm());
   }
-  if (depths.empty()) return 0;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return depths.empty() ? 0 : upperMedian(depths);
 }
 
 // By keyframe: whether its points are in the view.
@@ -31,7 +32,7 @@ std::vector<char> keyframesInView(const Map& map, KeyframeId centre, const ViewO
       continue;
     }
     const double distance = (keyframe.world_T_camera.translation - latest.world_T_camera.translation).norm();
-    const double turn = rotationAngle(keyframe.world_T_camera.rotation, latest.world_T_camera.rotation) * 180.0 / M_PI;
+    const double turn = degrees(rotationAngle(keyframe.world_T_camera.rotation, latest.world_T_camera.rotation));
     if (distance < reach && turn < options.largest_turn_deg) {
       near.emplace_back(distance / reach + turn / options.largest_turn_deg, keyframe.id);
     }
@@ -62,6 +63,7 @@ void writeSource(const Map& map, const MapPoint& point, ViewPoint& view_point) {
 }  // namespace
 
 MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options) {
+  assert(map.keyframes.contains(centre));
   MapView view;
   for (const Keyframe& keyframe : map.keyframes) {
     view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr, keyframe.uncertainty});

@@ -8,8 +8,8 @@
 namespace edgeslam {
 namespace {
 
-constexpr int kPartsAcross = 4;
-constexpr double kPlain = 0.01;  // mean square of a thumbnail that shows nothing [grey^2]
+constexpr int parts_across = 4;
+constexpr double plain_mean_square = 0.01;  // mean square of a thumbnail that shows nothing [grey^2]
 
 // Sums over the edge points: what cv::HuMoments takes, of points instead of pixels, so that sub-pixel places count.
 cv::Moments edgeMoments(const EdgeMap& edges) {
@@ -56,14 +56,14 @@ std::array<double, 7> huInvariants(const EdgeMap& edges) {
 
 int partOf(double x, double y, const cv::Size& size) {
   const auto cell = [](double at, int length) {
-    return std::clamp(static_cast<int>((at + 0.5) * kPartsAcross / length), 0, kPartsAcross - 1);
+    return std::clamp(static_cast<int>((at + 0.5) * parts_across / length), 0, parts_across - 1);
   };
-  return cell(y, size.height) * kPartsAcross + cell(x, size.width);
+  return cell(y, size.height) * parts_across + cell(x, size.width);
 }
 
-std::array<EdgeSignaturePart, kSignatureParts> describeParts(const cv::Mat& grey, const EdgeMap& edges) {
-  std::array<EdgeSignaturePart, kSignatureParts> parts;
-  std::array<std::set<int>, kSignatureParts> chains;
+std::array<EdgeSignaturePart, signature_parts> describeParts(const cv::Mat& grey, const EdgeMap& edges) {
+  std::array<EdgeSignaturePart, signature_parts> parts;
+  std::array<std::set<int>, signature_parts> chains;
   for (const EdgePoint& point : edges.points) {
     const auto part = static_cast<std::size_t>(partOf(point.pixel.x(), point.pixel.y(), grey.size()));
     parts[part].density += 1;
@@ -71,10 +71,10 @@ std::array<EdgeSignaturePart, kSignatureParts> describeParts(const cv::Mat& grey
   }
   cv::Scalar mean, deviation;
   cv::meanStdDev(grey, mean, deviation);
-  for (int i = 0; i < kSignatureParts; ++i) {
-    const int row = i / kPartsAcross, column = i % kPartsAcross;
-    const cv::Range rows(grey.rows * row / kPartsAcross, grey.rows * (row + 1) / kPartsAcross);
-    const cv::Range columns(grey.cols * column / kPartsAcross, grey.cols * (column + 1) / kPartsAcross);
+  for (int i = 0; i < signature_parts; ++i) {
+    const int row = i / parts_across, column = i % parts_across;
+    const cv::Range rows(grey.rows * row / parts_across, grey.rows * (row + 1) / parts_across);
+    const cv::Range columns(grey.cols * column / parts_across, grey.cols * (column + 1) / parts_across);
     EdgeSignaturePart& part = parts[static_cast<std::size_t>(i)];
     part.edges = static_cast<double>(chains[static_cast<std::size_t>(i)].size());
     part.density /= std::max(1, rows.size() * columns.size());
@@ -85,7 +85,7 @@ std::array<EdgeSignaturePart, kSignatureParts> describeParts(const cv::Mat& grey
 
 // Small, blurred, and with the slow changes of brightness taken out, so that exposure and vignetting do not count.
 cv::Mat makeThumbnail(const cv::Mat& grey) {
-  const cv::Size size(kThumbnailWidth, kThumbnailHeight);
+  const cv::Size size(signature_thumbnail_width, signature_thumbnail_height);
   cv::Mat small, real, slow, fine;
   cv::resize(grey, small, size, 0, 0, cv::INTER_AREA);
   small.convertTo(real, CV_32F);
@@ -101,8 +101,8 @@ double standardDeviation(const EdgeSignature& signature, double EdgeSignaturePar
     sum += part.*value;
     squares += part.*value * (part.*value);
   }
-  const double mean = sum / kSignatureParts;
-  return std::sqrt(std::max(0.0, squares / kSignatureParts - mean * mean));
+  const double mean = sum / signature_parts;
+  return std::sqrt(std::max(0.0, squares / signature_parts - mean * mean));
 }
 
 // How alike two values are, in [0, 1], seen against how much the value varies over the parts.
@@ -142,22 +142,22 @@ double partVote(const EdgeSignature& a, const EdgeSignature& b, const SignatureO
   for (std::size_t v = 0; v < values.size(); ++v) {
     variation[v] = 0.5 * (standardDeviation(a, values[v]) + standardDeviation(b, values[v]));
     double size = 0;
-    for (std::size_t i = 0; i < kSignatureParts; ++i) {
-      size += (std::abs(a.parts[i].*values[v]) + std::abs(b.parts[i].*values[v])) / (2 * kSignatureParts);
+    for (std::size_t i = 0; i < signature_parts; ++i) {
+      size += (std::abs(a.parts[i].*values[v]) + std::abs(b.parts[i].*values[v])) / (2 * signature_parts);
     }
     weight[v] = size > 0 ? variation[v] / size : 0;
   }
   const double total = weight[0] + weight[1] + weight[2];
   if (total <= 0) return a.parts[0].edges == b.parts[0].edges && a.parts[0].density == b.parts[0].density ? 1 : 0;
   int matched = 0;
-  for (std::size_t i = 0; i < kSignatureParts; ++i) {
+  for (std::size_t i = 0; i < signature_parts; ++i) {
     double similarity = 0;
     for (std::size_t v = 0; v < values.size(); ++v) {
       similarity += weight[v] / total * likeness(a.parts[i].*values[v], b.parts[i].*values[v], variation[v]);
     }
     if (similarity > options.part_similarity) ++matched;
   }
-  return static_cast<double>(matched) / kSignatureParts;
+  return static_cast<double>(matched) / signature_parts;
 }
 
 double signatureScore(const EdgeSignature& a, const EdgeSignature& b, const SignatureOptions& options) {
@@ -168,11 +168,11 @@ double thumbnailScore(const EdgeSignature& a, const EdgeSignature& b, int larges
   double best = -1;
   for (int y = -largest_shift; y <= largest_shift; ++y) {
     for (int x = -largest_shift; x <= largest_shift; ++x) {
-      const cv::Size overlap(kThumbnailWidth - std::abs(x), kThumbnailHeight - std::abs(y));
+      const cv::Size overlap(signature_thumbnail_width - std::abs(x), signature_thumbnail_height - std::abs(y));
       const cv::Mat of_a = a.thumbnail(cv::Rect(cv::Point(std::max(0, x), std::max(0, y)), overlap));
       const cv::Mat of_b = b.thumbnail(cv::Rect(cv::Point(std::max(0, -x), std::max(0, -y)), overlap));
       const double energy_a = of_a.dot(of_a), energy_b = of_b.dot(of_b);
-      if (std::min(energy_a, energy_b) < kPlain * overlap.area()) continue;
+      if (std::min(energy_a, energy_b) < plain_mean_square * overlap.area()) continue;
       best = std::max(best, of_a.dot(of_b) / std::sqrt(energy_a * energy_b));
     }
   }

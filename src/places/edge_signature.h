@@ -9,9 +9,9 @@
 
 namespace edgeslam {
 
-constexpr int kSignatureParts = 16;  // 4 x 4, row by row
-constexpr int kThumbnailWidth = 40;  // [px]
-constexpr int kThumbnailHeight = 30;
+constexpr int signature_parts = 16;            // 4 x 4, row by row
+constexpr int signature_thumbnail_width = 40;  // [px]
+constexpr int signature_thumbnail_height = 30;
 
 struct EdgeSignaturePart {
   double edges = 0;    // chains that pass through the part
@@ -21,8 +21,9 @@ struct EdgeSignaturePart {
 
 struct EdgeSignature {
   std::array<double, 7> moments{};  // Hu's seven, for curves: the same at any scale, place and turn of the image
-  std::array<EdgeSignaturePart, kSignatureParts> parts;
-  cv::Mat thumbnail;  // CV_32F, kThumbnailHeight x kThumbnailWidth, blurred, local contrast evened out
+  std::array<EdgeSignaturePart, signature_parts> parts;
+  cv::Mat
+      thumbnail;  // CV_32F, signature_thumbnail_height x signature_thumbnail_width, blurred, local contrast evened out
 };
 
 struct SignatureOptions {

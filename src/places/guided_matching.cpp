@@ -5,12 +5,13 @@
 #include <cmath>
 
 #include "flow/patch_alignment.h"
+#include "geometry/angles.h"
 #include "tracking/patch_refinement.h"
 
 namespace edgeslam {
 namespace {
 
-constexpr double kBorder = 8;  // [px]
+constexpr double image_border = 8;  // [px]
 
 const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
@@ -29,7 +30,7 @@ KeyframeId bestSourceOfPatch(const Map& map, const MapPoint& point, const Eigen:
     const Eigen::Vector3d ray = position - candidate.world_T_camera.translation;
     const double cosine = ray.dot(wanted) / (ray.norm() * wanted.norm());
     const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
-    if (!(angle * 180.0 / M_PI < largest_angle_deg)) return;
+    if (!(degrees(angle) < largest_angle_deg)) return;
     const double cost = angle + 0.5 * std::abs(std::log(ray.norm() / wanted.norm()));
     if (cost < least) {
       least = cost;
@@ -116,7 +117,7 @@ bool findByPatch(const Camera& camera, const Map& map, const PlaceView& from, co
   const Eigen::Vector2d tangent(-predicted.normal.y(), predicted.normal.x());
   if (std::abs(predicted.normal.dot(moved)) > largest_move || std::abs(tangent.dot(moved)) > along_limit) return false;
   predicted.pixel = pixel.cast<double>();
-  return insideImage(camera, predicted.pixel, kBorder);
+  return insideImage(camera, predicted.pixel, image_border);
 }
 
 GuidedMatches matchGuided(const Camera& camera, const Map& map, const PlaceView& from, const PlaceView& to,
@@ -125,14 +126,14 @@ GuidedMatches matchGuided(const Camera& camera, const Map& map, const PlaceView&
   if (!to.images) return found;
   const Pose to_T_from = upToScale(to_S_from);
   const Eigen::Vector3d centre = to_T_from.inverse().translation;
-  const double least_cosine = std::cos(options.largest_view_angle_deg * M_PI / 180.0);
+  const double least_cosine = std::cos(radians(options.largest_view_angle_deg));
   GuidedMatchingOptions wide = options;
   wide.partner_across += largest_move;
   for (std::size_t i = 0; i < from.points.size(); ++i) {
     const PlacePoint& point = from.points[i];
     GuidedMatch match;
     if (!predictMeasurement(camera, to_T_from, point.position, point.measurement, match.measurement)) continue;
-    if (!insideImage(camera, match.measurement.pixel, kBorder)) continue;
+    if (!insideImage(camera, match.measurement.pixel, image_border)) continue;
     const Eigen::Vector3d ray = point.position - centre;
     if (ray.dot(point.position) < least_cosine * ray.norm() * point.position.norm()) continue;
     ++found.visible;

@@ -6,13 +6,15 @@
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 
+#include "geometry/angles.h"
+
 namespace edgeslam {
 namespace {
 
 // Pyramid levels of ORB whose patches are described: each 1.44 times as large as the one before.
-constexpr int kLevels[] = {0, 2, 4};
-constexpr float kLevelScale = 1.2f;
-constexpr int kPatchSide = 31;
+constexpr int descriptor_levels[] = {0, 2, 4};
+constexpr float level_scale = 1.2f;
+constexpr int patch_side = 31;
 
 // Points to describe: corner-like ones first, then in the order in which they are.
 std::vector<int> choose(const PlaceView& view, int most) {
@@ -77,13 +79,13 @@ int distinctMatch(const cv::Mat& row, const std::vector<Eigen::Vector2f>& pixels
 DescribedPoints describePoints(const cv::Mat& grey, const std::vector<Eigen::Vector2f>& pixels, double roll) {
   DescribedPoints described;
   const cv::Ptr<cv::ORB> orb =
-      cv::ORB::create(500, kLevelScale, 8, kPatchSide / 2 + 1, 0, 2, cv::ORB::HARRIS_SCORE, kPatchSide);
-  const float angle = static_cast<float>(std::fmod(roll * 180.0 / M_PI + 720.0, 360.0));
-  for (const int level : kLevels) {
+      cv::ORB::create(500, level_scale, 8, patch_side / 2 + 1, 0, 2, cv::ORB::HARRIS_SCORE, patch_side);
+  const float angle = static_cast<float>(std::fmod(degrees(roll) + 720.0, 360.0));
+  for (const int level : descriptor_levels) {
     std::vector<cv::KeyPoint> keypoints;
     keypoints.reserve(pixels.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const float size = static_cast<float>(kPatchSide) * std::pow(kLevelScale, static_cast<float>(level));
+      const float size = static_cast<float>(patch_side) * std::pow(level_scale, static_cast<float>(level));
       keypoints.emplace_back(pixels[i].x(), pixels[i].y(), size, angle, 1.0f, level, static_cast<int>(i));
     }
     cv::Mat descriptors;

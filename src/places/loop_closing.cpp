@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "geometry/angles.h"
+#include "geometry/median.h"
+
 namespace edgeslam {
 namespace {
 
@@ -29,10 +32,7 @@ double sceneDistance(const Map& map, KeyframeId keyframe) {
     distances.push_back(
         (worldPosition(map, point->second) - keyframeOf(map, keyframe).world_T_camera.translation).norm());
   }
-  if (distances.empty()) return 0;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return distances.empty() ? 0 : upperMedian(distances);
 }
 
 // Where a loop says that the current keyframe is.
@@ -42,8 +42,6 @@ Pose impliedPose(const Map& map, const JudgedLoop& loop) {
          Pose{candidate_S_current.rotation, candidate_S_current.translation};
 }
 
-double degreesOf(double radians) { return radians * 180 / M_PI; }
-
 bool fewerInliers(const JudgedLoop& a, const JudgedLoop& b) {
   if (a.accepted != b.accepted) return b.accepted;
   return a.verification.inliers < b.verification.inliers;
@@ -52,8 +50,8 @@ bool fewerInliers(const JudgedLoop& a, const JudgedLoop& b) {
 }  // namespace
 
 void refuseContradictions(const Map& map, KeyframeId current, std::vector<JudgedLoop>& loops) {
-  constexpr double largest_turn = 15 * M_PI / 180;  // between what two loops say [rad] ...
-  constexpr double largest_distance = 0.5;          // ... and of the distance of the scene
+  constexpr double largest_turn = radians(15);  // between what two loops say [rad] ...
+  constexpr double largest_distance = 0.5;      // ... and of the distance of the scene
   const double distance = largest_distance * sceneDistance(map, current);
   std::vector<std::size_t> contradicted;
   for (std::size_t i = 0; i < loops.size(); ++i) {
@@ -80,7 +78,7 @@ LoopOutcome LoopClosing::addKeyframe(const Map& map) {
   if (!current) return outcome;
   if (last_loop_ >= 0 && outcome.current - last_loop_ <= options_.pause_keyframes) return outcome;
 
-  std::vector<double> scores(static_cast<std::size_t>(outcome.current), kNoScore);
+  std::vector<double> scores(static_cast<std::size_t>(outcome.current), no_score);
   for (const auto& [id, known] : known_) {
     if (id != outcome.current && known.signature && withinDrift(map, outcome.current, id))
       scores[static_cast<std::size_t>(id)] = score(*known.signature, *current);
@@ -135,7 +133,7 @@ double LoopClosing::score(const EdgeSignature& a, const EdgeSignature& b) const 
 bool LoopClosing::withinDrift(const Map& map, KeyframeId current, KeyframeId earlier) const {
   const Pose& world_T_earlier = keyframeOf(map, earlier).world_T_camera;
   const Pose& world_T_current = keyframeOf(map, current).world_T_camera;
-  const double turn = degreesOf(rotationAngle(world_T_earlier.rotation, world_T_current.rotation));
+  const double turn = degrees(rotationAngle(world_T_earlier.rotation, world_T_current.rotation));
   if (turn > options_.largest_turn_deg + options_.largest_view_turn_deg) return false;
   const double apart = (world_T_earlier.translation - world_T_current.translation).norm();
   return apart <
@@ -161,7 +159,7 @@ JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCand
   const Pose& world_T_current = keyframeOf(map, current).world_T_camera;
   const Similarity candidate_S_current = judged.verification.current_S_candidate.inverse();
   const double turn =
-      degreesOf(rotationAngle(world_T_candidate.rotation * candidate_S_current.rotation, world_T_current.rotation));
+      degrees(rotationAngle(world_T_candidate.rotation * candidate_S_current.rotation, world_T_current.rotation));
   const double move = (world_T_candidate * candidate_S_current.translation - world_T_current.translation).norm();
   const double allowed = allowedMove(map, current, candidate.keyframe);
   char text[160];

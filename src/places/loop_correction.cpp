@@ -4,6 +4,7 @@
 
 #include "adjustment/pose_graph.h"
 #include "adjustment/reprojection.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -15,10 +16,7 @@ Similarity similarityOf(const Pose& pose) { return {1, pose.rotation, pose.trans
 double medianDistance(const PlaceView& view) {
   std::vector<double> distances;
   for (const PlacePoint& point : view.points) distances.push_back(point.position.norm());
-  if (distances.empty()) return 1;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return distances.empty() ? 1 : upperMedian(distances);
 }
 
 // Keyframes that follow each other or share points are held as they are, and the loop as it was found.

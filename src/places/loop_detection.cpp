@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/angles.h"
+
 namespace edgeslam {
 namespace {
 
@@ -14,10 +16,10 @@ double barOf(const Map& map, KeyframeId current, const std::vector<double>& scor
   double bar = 1;
   int counted = 0;
   for (KeyframeId k = current - 1; k >= 0 && counted < options.bar_keyframes; --k) {
-    if (scores[static_cast<std::size_t>(k)] == kNoScore) continue;
+    if (scores[static_cast<std::size_t>(k)] == no_score) continue;
     const double angle =
         rotationAngle(keyframeOf(map, current).world_T_camera.rotation, keyframeOf(map, k).world_T_camera.rotation);
-    if (angle * 180.0 / M_PI >= options.bar_rotation_deg) continue;
+    if (degrees(angle) >= options.bar_rotation_deg) continue;
     bar = std::min(bar, scores[static_cast<std::size_t>(k)]);
     ++counted;
   }
@@ -58,7 +60,7 @@ LoopDetection detectLoops(const Map& map, KeyframeId current, const std::vector<
   };
   for (KeyframeId k = 0; k < current - options.recent_keyframes; ++k) {
     const double score = scores[static_cast<std::size_t>(k)];
-    if (score == kNoScore) continue;
+    if (score == no_score) continue;
     if (score > detection.bar && may[static_cast<std::size_t>(k)]) {
       run.push_back({k, score});
     } else {

@@ -27,17 +27,16 @@ struct LoopDetection {
 };
 
 // Score of a keyframe that cannot be compared: it has no images, or is culled.
-constexpr double kNoScore = -1;
+constexpr double no_score = -1;
 
-// `scores`: likeness of each earlier keyframe to `current`, in [0, 1], by keyframe number, or kNoScore where it
-// cannot be compared or is culled. A keyframe is a
-// candidate where it is not recent, is not held together with the current one by map points (see mayCloseLoop), and it
-// and its neighbours in the order of the keyframes, `consecutive` in a row, are all over the bar; it is the best among
-// these. Keyframes without a score are left out as if they were not there.
+// `scores`: likeness of each earlier keyframe to `current`, in [0, 1], by keyframe number, or no_score where it cannot
+// be compared or is culled. A keyframe is a candidate where it is not recent, is not held together with the current one
+// by map points (see mayCloseLoop), and it and its neighbours in the order of the keyframes, `consecutive` in a row,
+// are all over the bar; it is the best among these. Keyframes without a score are left out as if they were not there.
 LoopDetection detectLoops(const Map& map, KeyframeId current, const std::vector<double>& scores,
                           const LoopDetectionOptions& options);
 
-// Of each keyframe, by number: whether a loop to it would tell something new. Not where it shares map points with
+// Tells of each keyframe, by number, whether a loop to it would tell something new. Not where it shares map points with
 // `current`, as the paper has it, but for one thing: map reuse meets some points again before a loop is closed, most of
 // them points of straight edges that fit anywhere along these. So a keyframe that shares a few is none where over
 // `recent_keyframes` in a row between the two share none, and it shares less than `held_share` of the most that any

@@ -7,12 +7,13 @@
 #include <limits>
 #include <optional>
 
+#include "geometry/median.h"
 #include "places/thumbnail.h"
 
 namespace edgeslam {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
+constexpr double degree = M_PI / 180;
 
 template <class... Values>
 std::string text(const char* format, Values... values) {
@@ -88,10 +89,9 @@ std::vector<Pose> LoopSearch::starts(KeyframeId keyframe, const std::optional<Si
     distances.push_back((worldPosition(map_, point->second) - there.world_T_camera.translation).norm());
   }
   if (distances.empty()) return poses;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
+  const double distance = upperMedian(distances);
   const Eigen::Quaterniond turn = rotationOf(camera_, match);
-  for (const double forward : {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45}) add({turn, {0, 0, forward * *middle}});
+  for (const double forward : {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45}) add({turn, {0, 0, forward * distance}});
   return poses;
 }
 
@@ -250,7 +250,7 @@ LoopVerification verifyLoopBySearch(const Camera& camera, const ImageReading& re
     const double apart =
         (says.inverse().translation - found.inverse().translation).norm() / here->search.evidence.median_distance;
     const double scale = std::abs(std::log(current_S_candidate.scale / here->keyframe_S_candidate.scale));
-    return turn > options.witness_turn_deg * kDegree || apart > options.witness_distance ||
+    return turn > options.witness_turn_deg * degree || apart > options.witness_distance ||
            scale > options.witness_scale;
   };
   int witnesses = 0;

@@ -11,8 +11,8 @@ namespace edgeslam {
 namespace {
 
 // Of a descriptor's match: its place is only as good as the point next to it is near.
-constexpr double kDescriptorAcross = 2.5;  // [px]
-constexpr double kDescriptorAlong = 6;     // [px]
+constexpr double descriptor_across = 2.5;  // [px]
+constexpr double descriptor_along = 6;     // [px]
 
 Measurement loosened(Measurement m, double across, double along) {
   m.sigma_normal = std::hypot(m.sigma_normal, across);
@@ -38,11 +38,11 @@ std::vector<PlaceCorrespondence> descriptorPairs(const Map& map, const PlaceView
     pair.paired = true;
     pair.candidate_point = there.position;
     pair.current_point = here.position;
-    pair.in_current = loosened(here.measurement, kDescriptorAcross, kDescriptorAlong);
-    pair.in_candidate = loosened(there.measurement, kDescriptorAcross, kDescriptorAlong);
+    pair.in_current = loosened(here.measurement, descriptor_across, descriptor_along);
+    pair.in_candidate = loosened(there.measurement, descriptor_across, descriptor_along);
     // Whichever way the edge runs, a descriptor's match is that of a place.
-    pair.in_current.sigma_tangent = std::min(pair.in_current.sigma_tangent, kDescriptorAlong);
-    pair.in_candidate.sigma_tangent = std::min(pair.in_candidate.sigma_tangent, kDescriptorAlong);
+    pair.in_current.sigma_tangent = std::min(pair.in_current.sigma_tangent, descriptor_along);
+    pair.in_candidate.sigma_tangent = std::min(pair.in_candidate.sigma_tangent, descriptor_along);
     pair.depth_deviation = depthDeviation(here, there, 2 * options.depth_error);
     pairs.push_back(pair);
   }

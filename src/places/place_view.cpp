@@ -10,8 +10,8 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kSpacing = 3;  // [px]
-constexpr double kBorder = 8;   // [px]
+constexpr double least_spacing = 3;  // [px]
+constexpr double image_border = 8;   // [px]
 
 const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
@@ -64,7 +64,7 @@ PlaceView placeView(const Camera& camera, const Map& map, KeyframeId keyframe, i
   view.keyframe = keyframe;
   view.images = centre.images;
   const Pose camera_T_world = centre.world_T_camera.inverse();
-  PointSpacing spacing(cv::Size(camera.width, camera.height), kSpacing);
+  PointSpacing spacing(cv::Size(camera.width, camera.height), least_spacing);
   std::set<PointId> taken;
   for (const PointObservation& observation : centre.observations) {
     const auto found = map.points.find(observation.point);
@@ -88,7 +88,7 @@ PlaceView placeView(const Camera& camera, const Map& map, KeyframeId keyframe, i
       const Eigen::Vector3d there = other_T_world * worldPosition(map, found->second);
       if (!predictMeasurement(camera, camera_T_other, there, observation.measurement, point.measurement)) continue;
       const Eigen::Vector2f pixel = point.measurement.pixel.cast<float>();
-      if (!insideImage(camera, point.measurement.pixel, kBorder) || !spacing.isFree(pixel)) continue;
+      if (!insideImage(camera, point.measurement.pixel, image_border) || !spacing.isFree(pixel)) continue;
       spacing.add(pixel);
       taken.insert(observation.point);
       view.points.push_back(point);

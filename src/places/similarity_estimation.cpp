@@ -15,7 +15,7 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 using Matrix37d = Eigen::Matrix<double, 3, 7>;
 using Matrix27d = Eigen::Matrix<double, 2, 7>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Right-hand update [translation; rotation vector; logarithm of the scale].
 Similarity retract(const Similarity& similarity, const Vector7d& update) {
@@ -87,7 +87,7 @@ int countInliers(const Camera& camera, const std::vector<PlaceCorrespondence>& p
 double correspondenceError(const Camera& camera, const PlaceCorrespondence& correspondence,
                            const Similarity& current_S_candidate) {
   Residuals residuals;
-  if (!evaluate(camera, correspondence, current_S_candidate, false, residuals)) return kInfinity;
+  if (!evaluate(camera, correspondence, current_S_candidate, false, residuals)) return infinity;
   return largest(correspondence, residuals);
 }
 

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "geometry/angles.h"
+
 namespace edgeslam {
 namespace {
 
 constexpr double blur_sigma = 1.2;      // [px of the thumbnail]
 constexpr double lighting_sigma = 10;   // slower changes of the grey values are lighting and vignetting [px]
 constexpr double largest_shift = 0.25;  // share of the width and of the height
-constexpr double roll_step = 6 * M_PI / 180;
+constexpr double roll_step = radians(6);
 constexpr int roll_steps = 4;  // to each side
 
 // Correlation of first(x + dx, y + dy) with second(x, y) over the pixels that both have.

@@ -27,7 +27,7 @@ struct ThumbnailMatch {
 // Best match over shifts of at most a quarter of the image, without a turn.
 ThumbnailMatch matchShifted(const Thumbnail& first, const Thumbnail& second);
 
-// Likewise over turns of up to 24 degrees too, the shift to a fraction of a pixel.
+// Like the match without turns, over turns of up to 24 degrees too; the shift to a fraction of a pixel.
 ThumbnailMatch matchTurned(const Thumbnail& first, const Thumbnail& second);
 
 // Rotation first_R_second of a camera that only turned between the two thumbnails.

@@ -7,6 +7,7 @@
 
 #include "scale/measured_pose.h"
 #include "scale/scale_options.h"
+#include "scale/scale_state.h"
 #include "tracking/frame_result.h"
 
 namespace edgeslam {

@@ -9,7 +9,7 @@ struct KeyframeOptions {
   double rotation_deg = 15;   // P8: rotation to the last keyframe [deg]
   double track_share = 0.3;   // P9: correspondences left, as a share of the running average
   int fewest_mapped = 250;    // P10: 3D-2D correspondences ...
-  double mapped_share = 0.6;  // ... but at most this share of those at the last keyframe, so that bare scenes stay calm
+  double mapped_share = 0.6;  // ... or this share of the most since the last keyframe, if less: bare scenes stay calm
   double displacement_share = 0.2;  // P11: mean displacement, as a share of the image's width
   double interval_s = 0.5;          // P12 (the paper: 1 s) ...
   // ... if the image moved by this share of its width, rotation included: a camera that stands still learns nothing

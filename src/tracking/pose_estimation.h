@@ -1,4 +1,4 @@
-// The pose of a frame from its tracks' map points: robust Gauss-Newton from the prediction; EPnP in RANSAC (P16) where
+// The pose of a frame from its tracks' map points: robust Gauss-Newton from the prediction; P3P in RANSAC (P16) where
 // that fails.
 #pragma once
 

@@ -59,7 +59,7 @@ void addDifferenceOfGaussians(const cv::Mat& grey) {
   auto blurs = std::make_shared<Blurs>();
   addTimed("dog/GaussianBlur twice", [=] {
     const double further = options.sigma * std::sqrt(options.sigma_ratio * options.sigma_ratio - 1);
-    grey.convertTo(blurs->scaled, CV_16U, kBlurScale);
+    grey.convertTo(blurs->scaled, CV_16U, blur_scale);
     cv::GaussianBlur(blurs->scaled, blurs->narrow, {11, 11}, options.sigma, options.sigma, cv::BORDER_REPLICATE);
     cv::GaussianBlur(blurs->narrow, blurs->wide, {9, 9}, further, further, cv::BORDER_REPLICATE);
     cv::subtract(blurs->narrow, blurs->wide, blurs->dog, cv::noArray(), CV_16S);

@@ -19,10 +19,9 @@ SOURCES = {
     "src/pipeline/tracking_worker.cpp": [],
     "src/pipeline/mapping_worker.cpp": [  # events
         "recovered from three keyframes, ", " points", "relocalised at keyframe "],
-    "src/mapping/initialisation.cpp": [  # what the start was, and reasons of keyframes
-        " from frame ", " to frame ", ", quality ", " edge pieces, parallax ", " deg, ", " points", "first",
-        "initialisation"],
+    "src/mapping/initialisation.cpp": [" from frame ", " to frame ", ", "],  # what the start was
     "src/mapping/initialisation.h": [],
+    "src/mapping/initial_judgement.cpp": ["quality ", " edge pieces, parallax ", " deg, ", " points"],  # likewise
     "src/mapping/mapper.cpp": ["a saved map", "recovery"],
     "src/mapping/track_loss_recovery.cpp": [],
     "src/places/relocalisation.cpp": [],

@@ -180,7 +180,7 @@ TEST(EdgeDetection, WorksWithAllOptionsThatMayBeSet) {
   const cv::Mat image = renderTexture(cv::Size(160, 120), 6);
   for (const double sigma : {0.3, 1.0, 3.0, 10.0}) {
     for (const double ratio : {1.05, 1.6, 4.0}) {
-      for (int radius = 1; radius <= kLargestFitRadius; ++radius) {
+      for (int radius = 1; radius <= largest_fit_radius; ++radius) {
         EdgeOptions options;
         options.sigma = sigma;
         options.sigma_ratio = ratio;

@@ -54,7 +54,7 @@ TEST(EdgeNeighbours, OnlyMutualOnesStayAsByTheReferenceOnEveryTarget) {
       for (int i = 0; i < count; ++i) {
         const int kind = static_cast<int>(random() % 4);
         const int other = static_cast<int>(random() % static_cast<unsigned>(count));
-        ahead.push_back(kind == 0 ? -1 : kind == 1 ? kNotNamed : kind == 2 ? other : (i + 1) % count);
+        ahead.push_back(kind == 0 ? -1 : kind == 1 ? not_named : kind == 2 ? other : (i + 1) % count);
         behind.push_back(kind == 0 ? other : kind == 1 ? -1 : (i + count - 1) % count);
       }
       std::vector<int> expected_ahead = ahead, expected_behind = behind;

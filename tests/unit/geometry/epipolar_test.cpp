@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "geometry/relative_rotation.h"
 #include "unit/geometry/scene_fixture.h"
 
 namespace edgeslam {

@@ -1,9 +1,10 @@
 // The rotation alone between two views, where many matches do not follow it.
+#include "geometry/relative_rotation.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "geometry/epipolar.h"
 #include "unit/geometry/scene_fixture.h"
 
 namespace edgeslam {

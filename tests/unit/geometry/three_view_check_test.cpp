@@ -1,8 +1,9 @@
+#include "geometry/three_view_check.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "geometry/epipolar.h"
 #include "unit/geometry/scene_fixture.h"
 
 namespace edgeslam {

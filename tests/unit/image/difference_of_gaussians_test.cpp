@@ -24,7 +24,7 @@ TEST(DifferenceOfGaussians, OfAFlatImageIsZero) {
     differenceOfGaussians(cv::Mat(20, 30, CV_8U, cv::Scalar(grey)), 1.78, 1.26, images);
     for (int y = 0; y < 20; ++y) {
       for (int x = 0; x < 30; ++x) {
-        EXPECT_EQ(images.narrow.at<uint16_t>(y, x), grey * kBlurScale);
+        EXPECT_EQ(images.narrow.at<uint16_t>(y, x), grey * blur_scale);
         EXPECT_EQ(images.dog.at<int16_t>(y, x), 0);
       }
     }
@@ -43,8 +43,8 @@ TEST(DifferenceOfGaussians, SpreadsAPointAsGaussiansOfTheirWidths) {
       for (int x = 26; x <= 34; ++x) {
         const double squared = (x - 30) * (x - 30) + (y - 30) * (y - 30);
         const double expected =
-            255 * kBlurScale * std::exp(-squared / (2 * sigma * sigma)) / (2 * M_PI * sigma * sigma);
-        EXPECT_NEAR(image.at<uint16_t>(y, x), expected, 0.02 * 255 * kBlurScale / (2 * M_PI * sigma * sigma));
+            255 * blur_scale * std::exp(-squared / (2 * sigma * sigma)) / (2 * M_PI * sigma * sigma);
+        EXPECT_NEAR(image.at<uint16_t>(y, x), expected, 0.02 * 255 * blur_scale / (2 * M_PI * sigma * sigma));
       }
     }
   }
@@ -57,7 +57,7 @@ TEST(DifferenceOfGaussians, HasTheBitsOfOpenCvsBlur) {
     DifferenceOfGaussians images;
     differenceOfGaussians(image, sigma, 1.26, images);
     cv::Mat scaled;
-    image.convertTo(scaled, CV_16U, kBlurScale);
+    image.convertTo(scaled, CV_16U, blur_scale);
     const int side = 2 * images.to_narrow.radius() + 1;
     cv::Mat blurred;
     cv::GaussianBlur(scaled, blurred, {side, side}, sigma, sigma, cv::BORDER_REPLICATE);
@@ -78,7 +78,7 @@ TEST(DifferenceOfGaussians, TakesImagesSmallerThanItsKernels) {
     differenceOfGaussians(cv::Mat(size, CV_8U, cv::Scalar(200)), 2, 2, images);
     ASSERT_EQ(images.narrow.size(), size);
     ASSERT_EQ(images.dog.size(), size);
-    EXPECT_EQ(images.narrow.at<uint16_t>(0, 0), 200 * kBlurScale);
+    EXPECT_EQ(images.narrow.at<uint16_t>(0, 0), 200 * blur_scale);
     EXPECT_EQ(cv::countNonZero(images.dog), 0);
   }
 }

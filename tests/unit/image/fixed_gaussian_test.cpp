@@ -12,7 +12,7 @@ TEST(FixedGaussian, WeightsFollowTheCurveAndSumToOne) {
     const FixedGaussian gaussian = fixedGaussian(sigma);
     int sum = gaussian.weights[0];
     for (int k = 1; k <= gaussian.radius(); ++k) sum += 2 * gaussian.weights[static_cast<size_t>(k)];
-    EXPECT_EQ(sum, 1 << kWeightBits) << sigma;
+    EXPECT_EQ(sum, 1 << weight_bits) << sigma;
     EXPECT_GE(gaussian.radius(), 2.5 * sigma);
     for (int k = 1; k <= gaussian.radius(); ++k) {
       const double expected = gaussian.weights[0] * std::exp(-0.5 * k * k / (sigma * sigma));
@@ -22,7 +22,7 @@ TEST(FixedGaussian, WeightsFollowTheCurveAndSumToOne) {
 }
 
 TEST(FixedGaussian, OfNoWidthIsTheSinglePixel) {
-  EXPECT_EQ(fixedGaussian(0).weights, std::vector<int32_t>{1 << kWeightBits});
+  EXPECT_EQ(fixedGaussian(0).weights, std::vector<int32_t>{1 << weight_bits});
   EXPECT_EQ(fixedGaussian(0.01).radius(), 0);
 }
 

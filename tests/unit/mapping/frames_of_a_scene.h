@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "mapping/initial_frames.h"
 #include "unit/mapping/edge_scene.h"
 
 namespace edgeslam::test {
@@ -45,6 +46,15 @@ inline EdgeScene longWall(double length, int count) {
     scene.points.push_back({{x, uniform(random, -2, 2), uniform(random, 4, 6)}, direction(random), i, 0, true});
   }
   return scene;
+}
+
+// What a map may be started from: measured at these poses without error, the first of which is the origin.
+inline InitialFrames initialFrames(const Camera& camera, const EdgeScene& scene, const std::vector<Pose>& poses) {
+  InitialFrames frames;
+  frames.first = seen(camera, scene, poses.front(), 0, 0);
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    addFrame(frames, seen(camera, scene, poses[k], static_cast<std::int64_t>(k), -1));
+  return frames;
 }
 
 inline double distance(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }

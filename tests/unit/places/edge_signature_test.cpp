@@ -74,7 +74,7 @@ TEST(EdgeSignature, CountsEdgesAndTheirPixelsInEachPart) {
     }
   }
   const EdgeSignature signature = edgeSignature(grey, edges);
-  for (int i = 0; i < kSignatureParts; ++i) {
+  for (int i = 0; i < signature_parts; ++i) {
     const EdgeSignaturePart& part = signature.parts[static_cast<std::size_t>(i)];
     const bool there = i == 2 * 4 + 2;
     EXPECT_EQ(part.edges, there ? 3 : 0);
@@ -107,7 +107,7 @@ TEST(EdgeSignature, ExposureDoesNotChangeTheVote) {
   const EdgeSignature bright = signatureOf(grey), dark = signatureOf(darker);
   EXPECT_GT(partVote(bright, dark, {}), 0.9);
   EXPECT_GT(thumbnailScore(bright, dark, 0), 0.99);
-  for (std::size_t i = 0; i < kSignatureParts; ++i) EXPECT_NEAR(bright.parts[i].grey, dark.parts[i].grey, 0.02);
+  for (std::size_t i = 0; i < signature_parts; ++i) EXPECT_NEAR(bright.parts[i].grey, dark.parts[i].grey, 0.02);
 }
 
 TEST(EdgeSignature, ASmallTurnIsMoreLikeTheSameThanAnotherWall) {

@@ -48,7 +48,7 @@ TEST(LoopDetection, BarIsTheLowestOfTheLastFive) {
   EXPECT_DOUBLE_EQ(detectLoops(map, 30, scores, {}).bar, 0.5);
   scores[27] = 0.41;
   EXPECT_DOUBLE_EQ(detectLoops(map, 30, scores, {}).bar, 0.41);
-  scores[27] = kNoScore;  // passed over: one more further back counts
+  scores[27] = no_score;  // passed over: one more further back counts
   EXPECT_DOUBLE_EQ(detectLoops(map, 30, scores, {}).bar, 0.2);
 }
 
@@ -83,7 +83,7 @@ TEST(LoopDetection, KeyframesWithoutScoreDoNotBreakARow) {
   const Map map = keyframesOnly(31);
   std::vector<double> scores = usualScores();
   scores[5] = 0.6;
-  scores[6] = kNoScore;
+  scores[6] = no_score;
   scores[7] = 0.9;
   scores[8] = 0.7;
   EXPECT_EQ(numbers(detectLoops(map, 30, scores, {})), std::vector<int>{7});

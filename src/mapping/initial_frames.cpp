@@ -1,0 +1,43 @@
+#include "mapping/initial_frames.h"
+
+#include <cassert>
+#include <utility>
+
+#include "mapping/points_seen_by_both.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr std::size_t most_frames = 400;
+
+}  // namespace
+
+void addFrame(InitialFrames& frames, const TrackedFrame& frame) {
+  frames.since.push_back(frame);
+  if (frames.since.size() <= most_frames) return;
+  std::vector<TrackedFrame> thinned;
+  for (std::size_t i = 1; i < frames.since.size(); i += 2) thinned.push_back(std::move(frames.since[i]));
+  frames.since = std::move(thinned);
+}
+
+std::vector<std::size_t> spreadFrames(const InitialFrames& frames, int count) {
+  assert(count >= 1);
+  std::vector<std::size_t> spread;
+  const auto parts = static_cast<std::size_t>(count);
+  for (std::size_t k = 1; k <= parts; ++k) {
+    const std::size_t end = frames.since.size() * k / parts;
+    if (end >= 1 && (spread.empty() || spread.back() != end - 1)) spread.push_back(end - 1);
+  }
+  return spread;
+}
+
+CommonBearings commonBearings(const TrackedFrame& first, const TrackedFrame& other) {
+  CommonBearings bearings;
+  forEachCommon(first, other, [&](std::size_t i, std::size_t j) {
+    bearings.in_first.push_back(first.observations[i].bearing);
+    bearings.in_other.push_back(other.observations[j].bearing);
+  });
+  return bearings;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,64 @@
+#include "mapping/initial_map.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace edgeslam {
+namespace {
+
+void addKeyframe(const TrackedFrame& frame, const Pose& pose, const char* reason, Map& map) {
+  Keyframe keyframe;
+  keyframe.id = static_cast<KeyframeId>(map.keyframes.size());
+  keyframe.frame_index = frame.frame_index;
+  keyframe.time_ns = frame.time_ns;
+  keyframe.world_T_camera = pose;
+  keyframe.observations = frame.observations;
+  keyframe.images = frame.images;
+  keyframe.reason = reason;
+  map.keyframes.push_back(std::move(keyframe));
+}
+
+}  // namespace
+
+Map initialMap(const InitialFrames& frames, const InitialStructure& structure, double largest_depth_sigma) {
+  Map map;
+  addKeyframe(frames.first, Pose(), "first", map);
+  for (std::size_t k = 0; k < structure.frames.size(); ++k) {
+    addKeyframe(frames.since[structure.frames[k]], structure.first_T_camera[k], "initialisation", map);
+  }
+  for (std::size_t i = 0; i < frames.first.observations.size(); ++i) {
+    if (!structure.isKnown(i, largest_depth_sigma)) continue;
+    const PointObservation& first = frames.first.observations[i];
+    MapPoint point;
+    point.id = first.point;
+    point.host_bearing = first.bearing;
+    point.inverse_depth = structure.inverse_depths[i];
+    point.inverse_depth_sigma = structure.depth_sigmas[i];
+    point.corner = first.corner;
+    point.chain = first.chain;
+    point.order = first.order;
+    for (const Keyframe& keyframe : map.keyframes) {
+      if (keyframe.id > 0 && findObservation(keyframe, point.id)) point.seen_in.push_back(keyframe.id);
+    }
+    if (!point.seen_in.empty()) map.points.emplace(point.id, point);
+  }
+  return map;
+}
+
+std::vector<std::pair<std::int64_t, Pose>> posesOfInitialFrames(const Camera& camera, const InitialFrames& frames,
+                                                                const InitialStructure& structure) {
+  std::vector<std::pair<std::int64_t, Pose>> poses{{frames.first.frame_index, Pose()}};
+  // Backwards from the last frame, whose pose is known: each starts from its successor.
+  Pose pose = structure.first_T_camera.empty() ? Pose() : structure.first_T_camera.back();
+  for (std::size_t frame = frames.since.size(); frame-- > 0;) {
+    const std::optional<Pose> located =
+        locateAgainst(camera, frames.first, structure.inverse_depths, frames.since[frame], pose);
+    if (!located) break;
+    pose = *located;
+    poses.emplace_back(frames.since[frame].frame_index, pose);
+  }
+  std::sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return poses;
+}
+
+}  // namespace edgeslam

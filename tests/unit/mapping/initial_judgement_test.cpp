@@ -1,0 +1,86 @@
+// P13 and P15: what a start of the map asks for, one by one.
+#include "mapping/initial_judgement.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/mapping/frames_of_a_scene.h"
+
+namespace edgeslam {
+namespace {
+
+const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
+const test::EdgeScene scene = test::framesOnAWall(4);
+
+// The true structure of the first frame and the one at this pose.
+InitialStructure truth(const InitialFrames& frames, const Pose& pose) {
+  InitialStructure structure;
+  structure.frames = {0};
+  structure.first_T_camera = {pose};
+  for (const PointObservation& observation : frames.first.observations) {
+    structure.inverse_depths.push_back(1 / scene.points[static_cast<std::size_t>(observation.point)].position.norm());
+    structure.depth_sigmas.push_back(0.05 * structure.inverse_depths.back());
+  }
+  return structure;
+}
+
+InitialEvidence enough() {
+  InitialEvidence evidence;
+  evidence.followed = 200;
+  evidence.points = 150;
+  evidence.parallax_deg = 2;
+  evidence.quality.pieces = 100;
+  evidence.quality.kept = 90;
+  return evidence;
+}
+
+TEST(InitialJudgement, ARotationAloneMovesNothing) {
+  const InitialFrames turned = test::initialFrames(camera, scene, {Pose(), {rotationExp({0, 0.1, 0}), {0, 0, 0}}});
+  EXPECT_LT(displacementLessRotation(camera, turned), 0.1);
+  const InitialFrames moved = test::initialFrames(camera, scene, {Pose(), test::at(0.3, 0.1)});
+  EXPECT_GT(displacementLessRotation(camera, moved), 3);
+  InitialFrames nothing_seen = moved;
+  nothing_seen.since.back().observations.clear();
+  EXPECT_EQ(displacementLessRotation(camera, nothing_seen), 0);
+}
+
+TEST(InitialJudgement, TheTruthHasItsParallaxAndItsQuality) {
+  const Pose pose = test::at(0.3);
+  const InitialFrames frames = test::initialFrames(camera, scene, {Pose(), pose});
+  const InitialEvidence evidence = judgeInitialStructure(frames, truth(frames, pose), InitialisationOptions());
+  EXPECT_GT(evidence.followed, 300);
+  EXPECT_EQ(evidence.points, evidence.followed);
+  EXPECT_NEAR(evidence.parallax_deg, 5, 1.5);  // 0.3 seen from a distance of about 3
+  EXPECT_GT(evidence.quality.share(), 0.6);
+  EXPECT_EQ(reasonToWait(evidence, InitialisationOptions()), "");
+}
+
+TEST(InitialJudgement, PointsOfUncertainDepthDoNotCount) {
+  const Pose pose = test::at(0.3);
+  const InitialFrames frames = test::initialFrames(camera, scene, {Pose(), pose});
+  InitialStructure structure = truth(frames, pose);
+  for (double& sigma : structure.depth_sigmas) sigma *= 10;
+  const InitialEvidence evidence = judgeInitialStructure(frames, structure, InitialisationOptions());
+  EXPECT_GT(evidence.followed, 300);
+  EXPECT_EQ(evidence.points, 0);
+  EXPECT_EQ(evidence.parallax_deg, 0);
+}
+
+TEST(InitialJudgement, EachConditionIsNamed) {
+  const InitialisationOptions options;
+  EXPECT_EQ(reasonToWait(enough(), options), "");
+  InitialEvidence evidence = enough();
+  evidence.parallax_deg = 0.994;
+  EXPECT_EQ(reasonToWait(evidence, options), "too little parallax (0.99 deg)");
+  evidence = enough();
+  evidence.points = 79;  // of 200 followed
+  EXPECT_EQ(reasonToWait(evidence, options), "too few points with a good depth (79)");
+  evidence.points = 80;
+  EXPECT_EQ(reasonToWait(evidence, options), "");
+  evidence = enough();
+  evidence.quality.kept = 59;
+  EXPECT_EQ(reasonToWait(evidence, options), "quality too low (59 of 100 edge pieces hold)");
+  EXPECT_EQ(inWords(enough()), "quality 90 of 100 edge pieces, parallax 2.00 deg, 150 points");
+}
+
+}  // namespace
+}  // namespace edgeslam
