@@ -70,8 +70,8 @@ void Daemon::tellStartProblems() {
 
 // Priorities and memory were told at the start, with what to do.
 void Daemon::tellProcessorProblems(const LiveRun& run) {
-  for (const std::string& problem : run.problems()) {
-    if (problem.rfind("the processor", 0) == 0) log_.tell("runs on without " + problem);
+  for (const RefusedSetup& problem : run.problems()) {
+    if (problem.kind == SetupKind::processor) log_.tell("runs on without " + problem.text);
   }
 }
 
