@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <thread>
 
 #include "drivers/lcm/lcm_options.h"
@@ -40,10 +41,10 @@ std::vector<std::string> startProblems(const StartNeeds& needs) {
 }
 
 std::string realTimeProblem(int priority) {
-  std::string refusal;
+  std::optional<RefusedSetup> refusal;
   std::thread trial([&] { refusal = setUpThread({"trial", priority, 0, false, {}}); });
   trial.join();
-  if (refusal.empty()) return "";
+  if (!refusal) return "";
   const std::string wanted = std::to_string(priority);
   return "real-time priority " + wanted + " is not allowed, poses may come late; set LimitRTPRIO=" + wanted +
          " in the service, or `USER - rtprio " + wanted + "` in /etc/security/limits.conf";

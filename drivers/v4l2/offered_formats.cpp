@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "files/format_text.h"
+
 namespace edgeslam {
 namespace {
 
@@ -101,11 +103,7 @@ std::vector<double> offeredRates(const CaptureDevice& device, std::uint32_t code
   return rates;
 }
 
-std::string rateText(double rate) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", rate);
-  return text;
-}
+std::string rateText(double rate) { return formatted("%.4g", rate); }
 
 std::string sizeText(const OfferedSize& size) {
   std::string text = std::to_string(size.largest_width) + " x " + std::to_string(size.largest_height);

@@ -1,15 +1,14 @@
 #include "app/calibration_frames.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <utility>
 
 #include "calibration/calibration.h"
 #include "calibration/coverage.h"
+#include "files/format_text.h"
 #include "frames/folder_source.h"
 
 namespace edgeslam {
@@ -29,14 +28,9 @@ class Guide {
     const Coverage coverage = coverageOf(selection.views(), selection.imageSize());
     if (selection.views().size() % kViewsToAnError == 0) {
       const std::optional<double> error = quickError(selection.views(), board_, selection.imageSize());
-      std::array<char, 64> text{};
-      if (error) std::snprintf(text.data(), text.size(), ", error so far %.2f px", *error);
-      error_ = text.data();
+      error_ = error ? formatted(", error so far %.2f px", *error) : "";
     }
-    std::array<char, 128> text{};
-    std::snprintf(text.data(), text.size(), "view %d: %.0f %% of the image covered", coverage.views,
-                  100 * coverage.share());
-    tell_(text.data() + error_);
+    tell_(formatted("view %d: %.0f %% of the image covered", coverage.views, 100 * coverage.share()) + error_);
     const std::vector<std::string> wishes = missingViews(coverage);
     if (!wishes.empty() && wishes.front() != wish_) tell_("  next: " + wishes.front());
     wish_ = wishes.empty() ? "" : wishes.front();

@@ -1,31 +1,21 @@
 // Signals that ask a program to end, taken between two pieces of work.
 #pragma once
 
-#include <signal.h>
+#include "service/blocked_signals.h"
 
 namespace edgeslam {
 
-// Blocks the signals that ask a program to end and tells whether one came, so that nothing is cut off in the middle.
-// Threads that are started meanwhile inherit that.
+// Tells whether one came, so that nothing is cut off in the middle. Threads that are started meanwhile inherit that the
+// signals are blocked.
 class EndSignals {
  public:
-  EndSignals() {
-    sigemptyset(&signals_);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals_, number);
-    pthread_sigmask(SIG_BLOCK, &signals_, &before_);
-  }
-  ~EndSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  EndSignals(const EndSignals&) = delete;
-  EndSignals& operator=(const EndSignals&) = delete;
-
   bool came() {
-    const timespec at_once{};
-    came_ = came_ || sigtimedwait(&signals_, nullptr, &at_once) > 0;
+    came_ = came_ || signals_.take() != 0;
     return came_;
   }
 
  private:
-  sigset_t signals_{}, before_{};
+  BlockedSignals signals_;
   bool came_ = false;
 };
 

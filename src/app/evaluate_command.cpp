@@ -1,13 +1,13 @@
 #include "app/evaluate_command.h"
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "files/atomic_file.h"
+#include "files/format_text.h"
 
 namespace edgeslam {
 namespace {
@@ -25,13 +25,7 @@ std::string alignmentName(Alignment alignment) {
   return "";
 }
 
-std::string fixed(double value, int decimals) {
-  const int length = std::snprintf(nullptr, 0, "%.*f", decimals, value);
-  std::string text(static_cast<std::size_t>(length) + 1, '\0');
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  text.pop_back();
-  return text;
-}
+std::string fixed(double value, int decimals) { return formatted("%.*f", decimals, value); }
 
 std::string padded(const std::string& text, std::size_t width) {
   return text.size() < width ? std::string(width - text.size(), ' ') + text : text;

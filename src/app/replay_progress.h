@@ -5,9 +5,10 @@
 
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <iostream>
 #include <string>
+
+#include "files/format_text.h"
 
 namespace edgeslam {
 
@@ -24,9 +25,7 @@ class ReplayProgress {
     last_ = now();
     std::string line = "frame " + std::to_string(count) + (total_ > 0 ? " of " + std::to_string(total_) : "") + ", " +
                        stateName(frame.state) + (frame.reason.empty() ? "" : " (" + frame.reason + ")");
-    char speed[48];
-    std::snprintf(speed, sizeof(speed), ", %.1f x real time", sequence_s / (last_ - start_));
-    line += speed;
+    line += formatted(", %.1f x real time", sequence_s / (last_ - start_));
     if (terminal_) {
       std::cerr << "\r\033[K" << line << std::flush;
     } else {

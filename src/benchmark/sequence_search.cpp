@@ -3,12 +3,11 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <set>
 
+#include "files/format_text.h"
 #include "frames/frame_source.h"
 #include "recording/open_frame_source.h"
 #include "recording/recording_source.h"
@@ -164,9 +163,7 @@ std::string sequenceFingerprint(const std::string& folder) {
   for (const auto& [path, state] : files) {
     for (const char c : path + '\0' + state + '\0') hash = (hash ^ static_cast<unsigned char>(c)) * prime;
   }
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash));
-  return text.data();
+  return formatted("%016llx", static_cast<unsigned long long>(hash));
 }
 
 }  // namespace edgeslam

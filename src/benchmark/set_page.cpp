@@ -1,10 +1,10 @@
 #include "benchmark/set_page.h"
 
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "benchmark/page_assets.h"
+#include "files/format_text.h"
 #include "report/page_template.h"
 #include "report/report_assets.h"
 #include "report/report_published.h"
@@ -61,12 +61,6 @@ std::optional<PublishedErrors> publishedFor(const SetRun& run) {
   return published;
 }
 
-std::string fixed(const char* format, double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
-
 std::string right(const std::string& text, std::size_t width) {
   return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
 }
@@ -80,7 +74,7 @@ std::string plain(std::string text) {
 }
 
 std::string errorText(const RunFigures& run, const std::optional<ErrorFigures>& error) {
-  if (error) return fixed("%.2f", 100 * error->rmse_m);
+  if (error) return formatted("%.2f", 100 * error->rmse_m);
   return run.has_ground_truth ? "X" : "-";
 }
 
@@ -93,13 +87,13 @@ std::string tableLine(const SetRun& run, std::size_t name_width) {
   const StageFigures* tracking = stageOf(f, "tracking");
   line +=
       right(errorText(f, f.trajectory), 9) + right(errorText(f, f.live), 9) + right(errorText(f, f.at_keyframes), 14);
-  line += right(published ? published->edge_slam : "", 10) + right(fixed("%.1f", 100 * f.coverage), 9);
-  line += right(f.first_pose_s ? fixed("%.1f", *f.first_pose_s) : "-", 9);
+  line += right(published ? published->edge_slam : "", 10) + right(formatted("%.1f", 100 * f.coverage), 9);
+  line += right(f.first_pose_s ? formatted("%.1f", *f.first_pose_s) : "-", 9);
   line += right(std::to_string(f.recoveries), 12) + right(std::to_string(f.relocalisations), 17) +
           right(std::to_string(f.loops.size()), 7);
-  line += right(tracking ? fixed("%.2f", tracking->median) : "-", 11) +
-          right(tracking ? fixed("%.2f", tracking->percentile_99) : "-", 9) +
-          right(fixed("%.2f", f.real_time_ratio), 13);
+  line += right(tracking ? formatted("%.2f", tracking->median) : "-", 11) +
+          right(tracking ? formatted("%.2f", tracking->percentile_99) : "-", 9) +
+          right(formatted("%.2f", f.real_time_ratio), 13);
   return line + (run.failed ? "  failed: " + plain(run.message) : "") + "\n";
 }
 
@@ -116,9 +110,7 @@ std::string relativeLink(const std::string& page_folder, const std::string& path
     if (unreserved.find(c) != std::string::npos) {
       link += c;
     } else {
-      std::array<char, 4> code{};
-      std::snprintf(code.data(), code.size(), "%%%02X", static_cast<unsigned int>(static_cast<unsigned char>(c)));
-      link += code.data();
+      link += formatted("%%%02X", static_cast<unsigned int>(static_cast<unsigned char>(c)));
     }
   }
   return link;

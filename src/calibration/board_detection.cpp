@@ -5,9 +5,11 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "calibration/grid_tag_detection.h"
 #include "calibration/marker_detection.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -192,10 +194,7 @@ double medianBlur(const cv::Mat& grey, const std::vector<BoardCorner>& corners, 
     const double blur = blurAt(grey, corner.pixel, half);
     if (blur >= 0) blurs.push_back(blur);
   }
-  if (blurs.empty()) return 0;
-  const auto middle = blurs.begin() + static_cast<std::ptrdiff_t>(blurs.size() / 2);
-  std::nth_element(blurs.begin(), middle, blurs.end());
-  return *middle;
+  return medianOr(0.0, std::move(blurs));
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "calibration/calibration.h"
+#include "files/format_text.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -43,9 +45,7 @@ double seenSpacing(const std::vector<BoardView>& views, const Board& board) {
     }
   }
   if (gaps.size() < 10) return board.spacing;
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  return *middle;
+  return upperMedian(std::move(gaps));
 }
 
 }  // namespace
@@ -54,10 +54,7 @@ std::string boardMismatch(const std::vector<BoardView>& views, const Board& boar
   if (board.kind == BoardKind::aprilgrid) {
     const double seen = seenSpacing(views, board);
     if (std::abs(seen - board.spacing) <= kSpacingTolerance) return "";
-    std::array<char, 128> text{};
-    std::snprintf(text.data(), text.size(), "the gaps between the tags look like %.2f of a tag's side, not %.2f", seen,
-                  board.spacing);
-    return text.data();
+    return formatted("the gaps between the tags look like %.2f of a tag's side, not %.2f", seen, board.spacing);
   }
   if (board.kind == BoardKind::charuco) return "";
   // A part of a larger chessboard can be taken for the whole.

@@ -10,6 +10,7 @@
 
 #include "calibration/board_drawing.h"
 #include "edgeslam/input_error.h"
+#include "files/format_text.h"
 #include "files/text_file.h"
 
 namespace edgeslam {
@@ -31,17 +32,9 @@ const std::array<Paper, 9>& papers() {
   return list;
 }
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4f", value);
-  return text.data();
-}
+std::string number(double value) { return formatted("%.4f", value); }
 
-std::string millimetres(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
-}
+std::string millimetres(double value) { return formatted("%.4g", value); }
 
 std::string lowerCase(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -78,9 +71,7 @@ class Page {
     std::string file = "%PDF-1.6\n";
     std::string table = "xref\n0 " + std::to_string(objects.size() + 1) + "\n0000000000 65535 f \n";
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      std::array<char, 32> entry{};
-      std::snprintf(entry.data(), entry.size(), "%010zu 00000 n \n", file.size());
-      table += entry.data();
+      table += formatted("%010zu 00000 n \n", file.size());
       file += std::to_string(i + 1) + " 0 obj\n" + objects[i] + "\nendobj\n";
     }
     return file + table + "trailer\n<< /Size " + std::to_string(objects.size() + 1) + " /Root 1 0 R >>\nstartxref\n" +

@@ -1,15 +1,14 @@
 #include "calibration/calibration.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/coverage.h"
 #include "calibration/initial_camera.h"
 #include "calibration/model_fit.h"
 #include "edgeslam/input_error.h"
+#include "files/format_text.h"
 
 namespace edgeslam {
 namespace {
@@ -19,12 +18,6 @@ constexpr double kFisheyeGain = 0.9;      // held-back error that the fisheye mo
 constexpr double kLargestError_px = 0.7;  // held-back, at an image 640 px wide
 constexpr double kLargestFocalSigma = 0.005;  // of the focal length
 constexpr double kLargestExpected_px = 3;     // standard deviation of a bearing's pixel, at an image 640 px wide
-
-std::string text(const char* format, double value) {
-  std::array<char, 64> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
-}
 
 [[noreturn]] void refuse(const std::vector<std::string>& reasons) {
   std::string message = "these views make no calibration: ";
@@ -97,17 +90,17 @@ std::vector<std::string> resultProblems(const Calibration& calibration, const Bo
   const Camera& camera = calibration.camera;
   const double scale = std::max(1.0, camera.width / 640.0);
   if (!(calibration.held_back_rms_px <= kLargestError_px * scale)) {
-    problems.push_back("corners in views held back are off by " + text("%.2f px", calibration.held_back_rms_px) + " (" +
-                       text("%.2f", kLargestError_px * scale) + " is the limit): is the board flat, and is it " +
-                       boardText(board) + "?");
+    problems.push_back("corners in views held back are off by " + formatted("%.2f px", calibration.held_back_rms_px) +
+                       " (" + formatted("%.2f", kLargestError_px * scale) +
+                       " is the limit): is the board flat, and is it " + boardText(board) + "?");
   }
   const double focal_sigma = std::max(calibration.sigma(0) / camera.fx, calibration.sigma(1) / camera.fy);
   if (!(focal_sigma <= kLargestFocalSigma)) {
-    problems.push_back("the focal length is known to " + text("%.1f %%", 100 * focal_sigma) +
+    problems.push_back("the focal length is known to " + formatted("%.1f %%", 100 * focal_sigma) +
                        " only; add views of the board tilted by 20 to 45 degrees, near and far");
   }
   if (!(calibration.expected_max_px <= kLargestExpected_px * scale)) {
-    problems.push_back("the lens is known to " + text("%.1f px", calibration.expected_max_px) +
+    problems.push_back("the lens is known to " + formatted("%.1f px", calibration.expected_max_px) +
                        " only at the image's worst place; add views with the board in the image's corners");
   }
   if (!(camera.cx >= 0 && camera.cx <= camera.width - 1 && camera.cy >= 0 && camera.cy <= camera.height - 1)) {
@@ -133,7 +126,7 @@ Calibration calibrate(const std::vector<BoardView>& views, const Board& board, c
     if (!check) continue;
     calibration.remarks.push_back(
         std::string(model == CameraModel::kannala_brandt ? "kannala_brandt" : "pinhole_radial_tangential") +
-        ": error in views held back " + text("%.3f px", check->rms_px));
+        ": error in views held back " + formatted("%.3f px", check->rms_px));
     const bool is_better = best && check->rms_px < kFisheyeGain * best->rms_px;
     if (!best || is_better) best = check;
   }

@@ -1,10 +1,9 @@
 #include "calibration/calibration_text.h"
 
-#include <array>
-#include <cstdio>
 #include <vector>
 
 #include "edgeslam/input_error.h"
+#include "files/format_text.h"
 
 namespace edgeslam {
 namespace {
@@ -29,13 +28,6 @@ std::vector<Parameter> parametersOf(const Calibration& calibration) {
     parameters.push_back({names[i], c.distortion[i], sigma(4 + static_cast<Eigen::Index>(i)), false});
   }
   return parameters;
-}
-
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
 }
 
 const char* modelName(const Camera& camera) {

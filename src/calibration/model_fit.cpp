@@ -4,10 +4,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <utility>
 
 #include "calibration/corner_refinement.h"
 #include "calibration/initial_camera.h"
+#include "files/format_text.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -21,18 +23,7 @@ constexpr double kSignificant = 4;          // standard deviations of a coeffici
 constexpr std::size_t kFewestCorners = 6;   // of a view
 constexpr int kRefinements = 2;
 
-std::string errorText(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f px", value);
-  return text.data();
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+std::string errorText(double value) { return formatted("%.2f px", value); }
 
 // Poses and camera are moved as one.
 FitResult fitAll(Camera& camera, std::vector<ImagedView>& views, const FitOptions& options) {
@@ -55,7 +46,7 @@ double varianceFactor(const Camera& camera, const std::vector<ImagedView>& views
     }
   }
   constexpr double kMedianOfTwo = 1.386;  // of the chi-squared distribution with two degrees of freedom
-  return std::max(median(squares) / kMedianOfTwo, 1e-6);
+  return std::max(medianOr(0.0, squares) / kMedianOfTwo, 1e-6);
 }
 
 // Of the corners' distances [px]: single bad ones do not make a bad view.
@@ -64,13 +55,13 @@ double medianError(const Camera& camera, const FittedView& view) {
   for (const MeasuredCorner& corner : view.corners) {
     errors.push_back(cornerError(camera, view.camera_T_board, corner).norm());
   }
-  return median(errors);
+  return medianOr(0.0, errors);
 }
 
 void dropOutlierViews(const Camera& camera, ModelFit& fit) {
   std::vector<double> errors;
   for (const ImagedView& view : fit.views) errors.push_back(medianError(camera, view.fitted));
-  const double usual = median(errors);
+  const double usual = medianOr(0.0, errors);
   const double limit = std::max(kOutlierView * usual, 0.3);
   std::vector<ImagedView> kept;
   for (std::size_t i = 0; i < fit.views.size(); ++i) {

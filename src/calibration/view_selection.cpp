@@ -7,6 +7,7 @@
 
 #include "calibration/initial_camera.h"
 #include "edgeslam/input_error.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -27,10 +28,7 @@ double motionBetween(const BoardSighting& a, const BoardSighting& b) {
                                    [&](const BoardCorner& other) { return other.number == corner.number; });
     if (same != b.corners.end()) distances.push_back((same->pixel - corner.pixel).norm());
   }
-  if (distances.empty()) return 1e9;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return medianOr(1e9, std::move(distances));
 }
 
 }  // namespace

@@ -7,8 +7,10 @@
 #include <queue>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "edgeslam/input_error.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -131,10 +133,7 @@ std::int64_t medianStep(const Trajectory& trajectory) {
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     steps.push_back(trajectory[i].time_ns - trajectory[i - 1].time_ns);
   }
-  if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return medianOr<std::int64_t>(0, std::move(steps));
 }
 
 }  // namespace

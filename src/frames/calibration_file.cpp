@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "edgeslam/input_error.h"
+#include "files/format_text.h"
 #include "files/key_suggestion.h"
 #include "files/text_file.h"
 
@@ -279,11 +280,7 @@ std::string formatCalibrationFile(const Camera& camera) {
   const bool fisheye = camera.model == CameraModel::kannala_brandt;
   std::string text = std::string("model: ") + (fisheye ? "kannala_brandt" : "pinhole_radial_tangential") +
                      "\nwidth: " + std::to_string(camera.width) + "\nheight: " + std::to_string(camera.height) + "\n";
-  const auto append = [&text](const char* key, double value) {
-    std::array<char, 64> line{};
-    std::snprintf(line.data(), line.size(), "%s: %.17g\n", key, value);
-    text += line.data();
-  };
+  const auto append = [&text](const char* key, double value) { text += formatted("%s: %.17g\n", key, value); };
   append("fx", camera.fx);
   append("fy", camera.fy);
   append("cx", camera.cx);

@@ -19,4 +19,10 @@ typename std::decay_t<Values>::value_type upperMedian(Values&& values) {
   return *middle;
 }
 
+// The same of a copy, and `fallback` where there are no values.
+template <typename Values>
+typename Values::value_type medianOr(typename Values::value_type fallback, Values values) {
+  return values.empty() ? fallback : upperMedian(values);
+}
+
 }  // namespace edgeslam

@@ -50,7 +50,12 @@ LiveSlam::~LiveSlam() = default;
 
 int LiveSlam::width() const { return work_->camera.width; }
 int LiveSlam::height() const { return work_->camera.height; }
-std::vector<std::string> LiveSlam::problems() const { return work_->run.problems(); }
+
+std::vector<std::string> LiveSlam::problems() const {
+  std::vector<std::string> texts;
+  for (const RefusedSetup& problem : work_->run.problems()) texts.push_back(problem.text);
+  return texts;
+}
 
 void LiveSlam::handOver(const GreyImage& image, std::int64_t time_ns) {
   if (work_->stopped) throw InputError("no frame can follow after stop()");

@@ -1,6 +1,7 @@
 // Name, priority and processors of the calling thread. What is not allowed is told, and the run goes on without.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,18 @@ struct ThreadSetup {
   std::vector<int> processors;  // empty: all
 };
 
-// Empty, or what the thread does without and why, in a few words.
-std::string setUpThread(const ThreadSetup& setup);
+enum class SetupKind { processor, scheduling, nice_level, memory };
 
-// Keeps all memory of the process from being swapped out. Empty, or what it does without and why.
-std::string lockMemory();
+// What the system did not allow.
+struct RefusedSetup {
+  SetupKind kind = SetupKind::processor;
+  std::string text;  // what the run does without and why, in a few words
+};
+
+// None where all was allowed; of more refusals than one, the last.
+std::optional<RefusedSetup> setUpThread(const ThreadSetup& setup);
+
+// Keeps all memory of the process from being swapped out. None where that was allowed.
+std::optional<RefusedSetup> lockMemory();
 
 }  // namespace edgeslam

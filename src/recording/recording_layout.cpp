@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <vector>
 
 #include "edgeslam/input_error.h"
+#include "files/format_text.h"
 #include "files/text_file.h"
 
 namespace edgeslam {
@@ -49,10 +49,8 @@ std::string withoutControls(std::string_view text) {
 }
 
 std::string checksum(std::string_view text) {
-  std::array<char, checksum_digits + 1> digits{};
   const auto value = crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size());
-  std::snprintf(digits.data(), digits.size(), "%08lx", static_cast<unsigned long>(value));
-  return digits.data();
+  return formatted("%08lx", static_cast<unsigned long>(value));
 }
 
 // The text up to the next blank, which is taken off together with that blank.

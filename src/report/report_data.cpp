@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "geometry/median.h"
 #include "report/display_frame.h"
 #include "report/report_drawings.h"
 #include "report/report_map.h"
@@ -121,10 +123,7 @@ double medianFrameInterval(const RunResult& result) {
   for (std::size_t i = 1; i < result.frames.size(); ++i) {
     intervals.push_back(1e-6 * static_cast<double>(result.frames[i].time_ns - result.frames[i - 1].time_ns));
   }
-  if (intervals.empty()) return 0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return medianOr(0.0, std::move(intervals));
 }
 
 }  // namespace

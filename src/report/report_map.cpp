@@ -5,6 +5,8 @@
 #include <limits>
 #include <tuple>
 
+#include "geometry/median.h"
+
 namespace edgeslam {
 namespace {
 
@@ -32,13 +34,6 @@ bool followsEdges(const MapPointRecord& from, const MapPointRecord& to) {
   constexpr double least_cosine = 0.9;
   return std::abs(direction.dot(from.edge_direction)) > least_cosine &&
          std::abs(direction.dot(to.edge_direction)) > least_cosine;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // A few hundred cameras tell the depth as well as all of a long run.
@@ -79,8 +74,8 @@ std::vector<std::vector<int>> joinChains(const std::vector<MapPointRecord>& poin
     slopes.push_back(links[i].slope);
   }
   // In multiples of the medians, which hold whether `order` counts pixels or chosen points.
-  const double longest_gap = 8 * median(gaps);
-  const double usual_slope = median(slopes);
+  const double longest_gap = 8 * medianOr(0.0, gaps);
+  const double usual_slope = medianOr(0.0, slopes);
   const auto joined = [&](std::size_t i) {
     if (!same_chain(i) || links[i].gap > longest_gap) return false;
     if (links[i].slope <= 4 * usual_slope) return true;

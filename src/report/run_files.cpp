@@ -1,12 +1,11 @@
 #include "report/run_files.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "files/file_set.h"
+#include "files/format_text.h"
 #include "report/ply.h"
 #include "report/report.h"
 #include "report/run_summary.h"
@@ -15,12 +14,7 @@ namespace edgeslam {
 namespace {
 
 // Empty for a value that is not finite.
-std::string number(const char* format, double value) {
-  if (!std::isfinite(value)) return "";
-  std::array<char, 64> text{};
-  const int length = std::snprintf(text.data(), text.size(), format, value);
-  return {text.data(), static_cast<std::size_t>(length)};
-}
+std::string number(const char* format, double value) { return std::isfinite(value) ? formatted(format, value) : ""; }
 
 // Exact, which a double of seconds would not be.
 std::string secondsWithNanoseconds(std::int64_t time_ns) {

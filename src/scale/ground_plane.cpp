@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "geometry/angles.h"
+
 namespace edgeslam {
 namespace {
 
@@ -89,7 +91,7 @@ bool camerasAreAbove(const Plane& plane, const GroundScene& scene) {
 std::optional<Found> bestPlane(const std::vector<const GroundPoint*>& candidates, const GroundScene& scene,
                                const Eigen::Vector3d& up, const GroundOptions& options) {
   if (candidates.size() < 3) return std::nullopt;
-  const double least_cosine = std::cos(options.largest_tilt_deg * M_PI / 180);
+  const double least_cosine = std::cos(radians(options.largest_tilt_deg));
   std::mt19937 generator(1);
   const auto any = [&]() -> const Eigen::Vector3d& { return candidates[generator() % candidates.size()]->position; };
   std::optional<Found> best;
@@ -169,7 +171,7 @@ std::string problemOf(const Fit& fit, const Found& found, int below, const Groun
            " edges lie in a plane square to the body's z axis";
   }
   // Refined, a plane leaves the samples' bound where a steeper one is near.
-  const double tilt_deg = std::acos(std::clamp(fit.plane.normal.dot(meanUp(scene)), -1.0, 1.0)) * 180 / M_PI;
+  const double tilt_deg = degrees(std::acos(std::clamp(fit.plane.normal.dot(meanUp(scene)), -1.0, 1.0)));
   if (tilt_deg > options.largest_tilt_deg) {
     return "the plane is " + std::to_string(std::lround(tilt_deg)) + " degrees off what the body's z axis says";
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/median.h"
+
 namespace edgeslam {
 namespace {
 
@@ -22,12 +24,6 @@ double weightedMedian(const std::vector<ScaleMeasurement>& measurements) {
     if (2 * below >= all) return measurement.log_scale;
   }
   return sorted.back().log_scale;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 struct Inliers {
@@ -67,7 +63,7 @@ std::optional<ScaleEstimate> scaleEstimate(const std::vector<ScaleMeasurement>& 
     deviations.push_back(std::abs(measurement.log_scale - centre));
     errors.push_back(deviations.back() / std::sqrt(measurement.variance));
   }
-  const double widening = std::max(1.0, normal_over_median * median(errors));
+  const double widening = std::max(1.0, normal_over_median * upperMedian(std::vector<double>(errors)));
   const Inliers inliers = inliersAround(measurements, centre, widening);
   ScaleEstimate estimate;
   const auto all = static_cast<double>(measurements.size());

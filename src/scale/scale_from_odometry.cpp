@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
+#include "files/format_text.h"
 #include "scale/utime.h"
 
 namespace edgeslam {
@@ -40,12 +40,6 @@ double motionVariance(const MeasuredPose& before, const MeasuredPose& now, const
   const Eigen::Matrix3d covariance =
       (carriedCovariance(before.covariance_camera, moved) + now.covariance_camera).topLeftCorner<3, 3>();
   return std::max(direction.dot(covariance * direction), 0.0) / moved.translation.squaredNorm();
-}
-
-std::string formatted(const char* format, double value) {
-  char text[200];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
 }
 
 }  // namespace

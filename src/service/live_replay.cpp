@@ -18,10 +18,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // One line for all that was not allowed.
-void tell(const std::vector<std::string>& problems) {
+void tell(const std::vector<RefusedSetup>& problems) {
   if (problems.empty()) return;
   std::cerr << "edgeslam: runs on without ";
-  for (const std::string& problem : problems) std::cerr << (&problem == &problems.front() ? "" : "; ") << problem;
+  for (const RefusedSetup& problem : problems) {
+    std::cerr << (&problem == &problems.front() ? "" : "; ") << problem.text;
+  }
   std::cerr << " (threads: in the configuration)\n";
 }
 
@@ -76,9 +78,10 @@ LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Set
     replay.publisher->begin(run, recorder, replay.map_in ? RunStart::saved_map : RunStart::new_map);
   }
   run.start();
-  std::vector<std::string> problems = run.problems();
-  const std::string refused = setUpThread({"capture", settings.threads.capture_priority, 0, false, {}});
-  if (!refused.empty()) problems.push_back(refused);
+  std::vector<RefusedSetup> problems = run.problems();
+  if (const auto refused = setUpThread({"capture", settings.threads.capture_priority, 0, false, {}})) {
+    problems.push_back(*refused);
+  }
   tell(problems);
   feed(source, camera, replay.pace, run);
   setUpThread({"edgeslam", 0, 0, false, {}});

@@ -1,76 +1,49 @@
 #include "service/run_publisher.h"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "service/status_text.h"
+
 namespace edgeslam {
-namespace {
-
-// What matters of the state for those who read the log.
-std::string stateText(TrackingState state, const std::string& reason) {
-  if (isGoodPose(state)) return "tracking";
-  if (state == TrackingState::predicted) return "";  // of one frame; told where it stays
-  return stateName(state) + (reason.empty() ? "" : ", " + reason);
-}
-
-std::string serviceText(const PublisherStatus& status, TrackingState state, bool with_gaps) {
-  if (!status.camera_problem.empty()) return "no camera: " + status.camera_problem;
-  return std::string(stateName(state)) + ", " + std::to_string(status.keyframes) + " keyframes, " +
-         std::to_string(status.points) + " points" + (status.recording ? ", recording" : "") +
-         (with_gaps ? " with gaps" : "");
-}
-
-}  // namespace
-
-PublishingSetup publishingSetup(const Configuration& configuration, const Camera& camera) {
-  const ServiceOptions& service = configuration.service;
-  PublishingSetup setup;
-  setup.lcm = service.lcm;
-  setup.lcm.real_time_priority = configuration.settings.threads.publishing_priority;
-  setup.map_interval_s = service.map_interval_s;
-  setup.body_T_camera = configuration.body_T_camera;
-  setup.camera = camera;
-  setup.scale = service.scale;
-  if (service.scale.source == "odometry") setup.lcm.wheels_channel = service.scale.odometry.channel;
-  return setup;
-}
 
 RunPublisher::RunPublisher(const PublishingSetup& setup, CaptureLink& link, EventLog& log)
-    : setup_(setup),
+    : viewer_(setup.viewer),
       link_(link),
-      log_(log),
       publisher_(setup.lcm, setup.body_T_camera),
-      search_(setup.scale, setup.body_T_camera) {}
+      answers_(publisher_, viewer_),
+      scale_(setup.scale, setup.body_T_camera, publisher_, work_, log),
+      map_(setup.camera, setup.map_interval_s, publisher_, viewer_, work_),
+      saving_(setup.camera, setup.map_file, answers_, disk_work_, log),
+      recording_(answers_, disk_work_, log),
+      commands_({link_, map_, saving_, recording_, scale_}, answers_, setup.begins_anew),
+      log_(log) {}
 
 void RunPublisher::begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder, RunStart start) {
   run_ = &run;
-  recorder_ = std::move(recorder);
-  told_recording_ = isRecording();
-  told_gaps_ = false;
-  published_changes_ = 0;
-  shown_changes_ = -1;
-  if (setup_.viewer) run.showTo(setup_.viewer->looks());
-  if (start == RunStart::same_map) return;
-  forgetScale();
-  if (start == RunStart::saved_map && setup_.scale.metres_per_unit > 0) {
-    scale_ = ScaleKind::known_distance;
-    publisher_.setScale({scale_, setup_.scale.metres_per_unit, setup_.scale.sigma});
-  }
+  totals_.begin(run);
+  recording_.begin(std::move(recorder));
+  map_.begin(run);
+  saving_.begin(run);
+  if (viewer_) run.showTo(viewer_->looks());
+  if (start != RunStart::same_map) scale_.forget();
+  if (start == RunStart::saved_map) scale_.takeConfigured();
 }
 
 void RunPublisher::end(bool is_last) {
   work_.finish();
   work_.complete();
-  answerSaves(std::exchange(save_wishes_, {}), false, "the run ended before the map could be saved");
-  if (told_recording_) endRecording({});
-  recorder_.reset();
+  saving_.end();
+  recording_.end();
   if (is_last) disk_work_.finish();
   disk_work_.complete();
   const PublisherStatus last = status();
-  publisher_.status(last);
-  showStatus(last);
+  giveOut(last);
   tellChanges(last);
-  map_wanted_ = ground_wanted_ = false;
-  earlier_runs_ = countsOverRuns();
+  map_.end();
+  scale_.runEnded();
+  totals_.end();
   run_ = nullptr;
 }
 
@@ -84,123 +57,79 @@ LiveObserver RunPublisher::observer() {
 
 void RunPublisher::frame(const FrameResult& result, const std::string& problem) {
   const bool is_initialising = result.state == TrackingState::initialising;
-  if (is_initialising && (state_ != TrackingState::initialising || scale_ != ScaleKind::unknown)) forgetScale();
+  if (is_initialising && (state_ != TrackingState::initialising || scale_.isKnown())) scale_.forget();
   publisher_.frame(result);
-  if (setup_.viewer) setup_.viewer->frame(result);
+  if (viewer_) viewer_->frame(result);
   service_.alive(Clock::now());
-  history_.add(result);
-  takeOdometry();
-  search_.add(result);
-  if (!problem.empty()) ++unreadable_;
+  scale_.frame(result);
+  totals_.frame(/*is_readable=*/problem.empty());
   state_ = result.state;
   reason_ = result.reason;
 }
 
 void RunPublisher::report(const MappingReport& report) {
-  if (report.found) ++(report.found->how == TrackingState::recovered ? recoveries_ : relocalisations_);
-  if (report.loop) {
-    ++loops_;
-    mapWasCorrected();
-  }
-  if (report.found || report.loop) {
-    for (const std::string& event : report.events) {
-      log_.tell("frame " + std::to_string(report.frame_index) + ": " + event);
-    }
-  }
-  if (report.map) mapCame(report.map);
+  totals_.report(report);
+  if (report.loop) scale_.mapWasCorrected();
+  log_.report(report);
+  if (!report.map) return;
+  map_.mapCame(report.map);
+  scale_.mapCame(report.map);
+  saving_.mapCame(report.map);
 }
 
 void RunPublisher::tick() {
   const Clock::time_point now = Clock::now();
   work_.complete();
   disk_work_.complete();
-  for (const CaptureLink::Answer& given : link_.takeAnswers()) {
-    answer(given.command, given.accepted, given.message);
-  }
-  if (link_.takeMapWish()) askToSaveMap({});
-  while (const std::optional<Command> command = publisher_.nextCommand()) carryOut(*command);
-  while (const std::optional<Command> command = setup_.viewer ? setup_.viewer->nextCommand() : std::nullopt) {
-    carryOut(*command);
-  }
+  carryOutCommands();
   if (const std::int64_t waits = link_.waits(); waits != waits_) {
     waits_ = waits;
     service_.alive(now);
   }
-  takeOdometry();
+  scale_.takeOdometry();
   if (now >= next_second_) eachSecond(now);
+}
+
+void RunPublisher::carryOutCommands() {
+  commands_.passOnAnswers();
+  if (link_.takeMapWish()) saving_.ask({});
+  while (const std::optional<Command> command = publisher_.nextCommand()) commands_.carryOut(*command);
+  while (const std::optional<Command> command = viewer_ ? viewer_->nextCommand() : std::nullopt) {
+    commands_.carryOut(*command);
+  }
 }
 
 void RunPublisher::eachSecond(Clock::time_point now) {
   next_second_ = std::max(next_second_ + std::chrono::seconds(1), now);
-  followScale(now);
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  if (scale_.everySecond(seconds, run_->counts().points > 0)) run_->askForMap();
   const PublisherStatus current = status();
-  publisher_.status(current);
-  showStatus(current);
-  service_.status(serviceText(current, state_, recordsWithGaps()));
+  giveOut(current);
+  service_.status(serviceText(current, state_, recording_.hasGaps()));
   tellChanges(current);
-  publishChangedMap(now);
-  showChangedMap(now);
+  map_.everySecond(now);
 }
 
-void RunPublisher::showStatus(const PublisherStatus& status) {
-  if (setup_.viewer) setup_.viewer->status(status, publisher_.scale(), publisher_.problem());
+void RunPublisher::giveOut(const PublisherStatus& status) {
+  publisher_.status(status);
+  if (viewer_) viewer_->status(status, publisher_.scale(), publisher_.problem());
+}
+
+void RunPublisher::tellChanges(const PublisherStatus& status) {
+  log_.tellChanges(status.frames_captured > 0 ? logText(state_, reason_) : "", publisher_.problem());
+  recording_.tellChanges(status.recording);
 }
 
 PublisherStatus RunPublisher::status() const {
-  const LiveCounts counts = countsOverRuns();
   PublisherStatus status;
+  totals_.fill(status);
   status.uptime_ms = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start_).count();
   status.version = EDGESLAM_VERSION;
-  status.frames_captured = counts.captured;
-  status.frames_dropped = counts.passed_over + link_.lost();
-  status.frames_unreadable = unreadable_;
-  status.results_not_published = counts.not_published;
-  status.recoveries = recoveries_;
-  status.relocalisations = relocalisations_;
-  status.loops = loops_;
-  status.mapping_queue = static_cast<int>(counts.messages_waiting);
-  status.publishing_queue = static_cast<int>(counts.results_waiting);
-  status.keyframes = static_cast<int>(counts.keyframes);
-  status.points = static_cast<int>(counts.points);
-  status.recording = isRecording();
+  status.frames_dropped += link_.lost();
+  status.recording = recording_.goesOn();
   status.camera_problem = link_.cameraProblem();
-  status.scale_problem = scaleProblem();
+  status.scale_problem = scale_.problem();
   return status;
 }
-
-// At most a line of each kind a second.
-void RunPublisher::tellChanges(const PublisherStatus& status) {
-  const std::string state = stateText(state_, reason_);
-  if (!state.empty() && state != told_state_ && status.frames_captured > 0) {
-    told_state_ = state;
-    log_.tell("state: " + state);
-  }
-  const std::string problem = publisher_.problem();
-  if (problem != told_lcm_problem_) {
-    log_.tell(problem.empty() ? "messages go out again" : "messages do not go out: " + problem);
-    told_lcm_problem_ = problem;
-  }
-  if (told_recording_ && !status.recording && recorder_) log_.tell(recorder_->status().message);
-  told_recording_ = status.recording;
-  if (!told_gaps_ && recordsWithGaps()) {
-    told_gaps_ = true;
-    log_.tell("recording to " + recorder_->folder() + ", with gaps: it will not repeat the run");
-  }
-}
-
-// Counters of the runs before are in; what is of now is of this run.
-LiveCounts RunPublisher::countsOverRuns() const {
-  LiveCounts counts = run_ ? run_->counts() : LiveCounts();
-  counts.captured += earlier_runs_.captured;
-  counts.processed += earlier_runs_.processed;
-  counts.passed_over += earlier_runs_.passed_over;
-  counts.mapping_behind += earlier_runs_.mapping_behind;
-  counts.not_published += earlier_runs_.not_published;
-  return counts;
-}
-
-bool RunPublisher::isRecording() const { return recorder_ && recorder_->status().recording; }
-
-bool RunPublisher::recordsWithGaps() const { return isRecording() && recorder_->status().not_recorded > 0; }
 
 }  // namespace edgeslam

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "geometry/angles.h"
+
 namespace edgeslam {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kCorridorStep_s = 0.005;
 constexpr double kBrakingTime_s = 0.4;
 constexpr double kShakeRise_s = 0.15;
-constexpr double kTurn_rad = 40 * kPi / 180;
+constexpr double kTurn_rad = radians(40);
 constexpr double kPanelsPeriod_s = 26;
 constexpr double kRoomPeriod_s = 26;
 

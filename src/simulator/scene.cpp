@@ -2,9 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdio>
 
 #include "edgeslam/input_error.h"
+#include "files/format_text.h"
 #include "simulator/scene_parts.h"
 #include "simulator/scene_textures.h"
 
@@ -196,10 +196,8 @@ Scene makeScene(SceneKind kind, std::uint64_t seed) {
 std::string formatSurfaces(const Scene& scene) {
   std::string text = "# the scene's triangles, world, metres: x0 y0 z0 x1 y1 z1 x2 y2 z2\n";
   const auto append = [&text](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-    char line[256];
-    std::snprintf(line, sizeof line, "%.6g %.6g %.6g %.6g %.6g %.6g %.6g %.6g %.6g\n", a.x(), a.y(), a.z(), b.x(),
-                  b.y(), b.z(), c.x(), c.y(), c.z());
-    text += line;
+    text += formatted("%.6g %.6g %.6g %.6g %.6g %.6g %.6g %.6g %.6g\n", a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), c.x(),
+                      c.y(), c.z());
   };
   for (const SceneRectangle& r : scene.rectangles) {
     const Vector3d opposite = r.corner + r.side_s + r.side_t;

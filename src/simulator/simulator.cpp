@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "edgeslam/input_error.h"
+#include "files/format_text.h"
 #include "simulator/scene_lighting.h"
 
 namespace edgeslam {
@@ -21,9 +21,7 @@ constexpr int kMostPoses = 41;
 
 void checkRange(const char* option, double value, double least, double most) {
   if (value >= least && value <= most) return;
-  char text[160];
-  std::snprintf(text, sizeof text, "simulate: %s is %g, expected %g to %g", option, value, least, most);
-  throw InputError(text);
+  throw InputError(formatted("simulate: %s is %g, expected %g to %g", option, value, least, most));
 }
 
 void checkRanges(const char* option, const std::vector<FrameRange>& ranges, int frames) {

@@ -11,6 +11,7 @@
 
 #include "edgeslam/input_error.h"
 #include "evaluation/trajectory.h"
+#include "files/format_text.h"
 #include "files/text_file.h"
 
 namespace edgeslam {
@@ -83,11 +84,7 @@ std::string formatCalibration(const Camera& camera, const SimulationOptions& opt
   const bool fisheye = camera.model == CameraModel::kannala_brandt;
   std::string text = std::string("# simulated scene ") + sceneName(options.scene) + "\n";
   if (fisheye) text += "model: kannala_brandt\n";
-  const auto append = [&text](const char* key, double value) {
-    char line[64];
-    std::snprintf(line, sizeof line, "%s: %.10g\n", key, value);
-    text += line;
-  };
+  const auto append = [&text](const char* key, double value) { text += formatted("%s: %.10g\n", key, value); };
   append("width", camera.width);
   append("height", camera.height);
   append("fx", camera.fx);

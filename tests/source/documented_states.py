@@ -33,7 +33,7 @@ SOURCES = {
     "src/scale/scale_from_camera_height.cpp": [],
     "src/scale/scale_from_odometry.cpp": [],
     "src/scale/scale_search.cpp": ["odometry", "camera_height"],  # values of scale.source
-    "src/service/run_publisher_scale.cpp": [  # lines of the log
+    "src/service/metric_scale.cpp": [  # lines of the log
         "the scale is %.6g metres a map unit, standard deviation %.2g %%",
         "the scale is unknown again: another map was begun", "the scale is not known yet: ",
         "the scale is not renewed: "],

@@ -8,20 +8,11 @@
 #include <sstream>
 
 #include "unit/lcm/made_frames.h"
+#include "unit/service/made_service.h"
 #include "unit/service/service_manager.h"
 
 namespace edgeslam {
 namespace {
-
-Camera smallCamera() {
-  Camera camera;
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = camera.fy = 300;
-  camera.cx = 160;
-  camera.cy = 120;
-  return camera;
-}
 
 class RunPublisherTest : public testing::Test {
  protected:

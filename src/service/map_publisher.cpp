@@ -1,0 +1,76 @@
+#include "service/map_publisher.h"
+
+#include <cassert>
+#include <utility>
+#include <vector>
+
+#include "pipeline/map_records.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr auto shown_interval = std::chrono::seconds(2);
+
+std::vector<PublishedPoint> publishedPoints(const Map& map, const Camera& camera) {
+  std::vector<PublishedPoint> points;
+  for (const MapPointRecord& record : mapPointRecords(map, camera)) {
+    points.push_back({record.id, record.position.cast<float>(), record.edge_direction.cast<float>()});
+  }
+  return points;
+}
+
+}  // namespace
+
+MapPublisher::MapPublisher(const Camera& camera, double interval_s, LcmPublisher& publisher, Viewer* viewer,
+                           BackgroundWork& work)
+    : camera_(camera), interval_s_(interval_s), publisher_(publisher), viewer_(viewer), work_(work) {}
+
+void MapPublisher::begin(LiveRun& run) {
+  run_ = &run;
+  published_changes_ = 0;
+  shown_changes_ = -1;
+}
+
+void MapPublisher::ask() {
+  assert(run_);
+  is_wanted_ = true;
+  run_->askForMap();
+}
+
+void MapPublisher::everySecond(Clock::time_point now) {
+  publishWhereChanged(now);
+  showWhereChanged(now);
+}
+
+void MapPublisher::publishWhereChanged(Clock::time_point now) {
+  const LiveCounts counts = run_->counts();
+  if (interval_s_ <= 0 || now < next_time_ || counts.points == 0 || counts.map_changes == published_changes_) return;
+  next_time_ = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval_s_));
+  published_changes_ = counts.map_changes;
+  ask();
+}
+
+// While someone looks on.
+void MapPublisher::showWhereChanged(Clock::time_point now) {
+  if (!viewer_ || !viewer_->isWatched()) {
+    shown_changes_ = -1;
+    return;
+  }
+  const std::int64_t changes = run_->counts().map_changes;
+  if (changes == shown_changes_ || now < next_shown_time_) return;
+  next_shown_time_ = now + shown_interval;
+  shown_changes_ = changes;
+  run_->askForMap();
+}
+
+void MapPublisher::mapCame(const std::shared_ptr<const Map>& map) {
+  if (viewer_) viewer_->map(map);
+  if (!std::exchange(is_wanted_, false)) return;
+  work_.begin([this, map, camera = camera_, version = ++version_]() -> BackgroundWork::Completion {
+    return [this, version, points = publishedPoints(*map, camera)]() mutable {
+      publisher_.map(version, std::move(points));
+    };
+  });
+}
+
+}  // namespace edgeslam

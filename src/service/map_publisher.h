@@ -1,0 +1,52 @@
+// The map on its way out: as SLAM_MAP, on request and where it changed, and to the viewer while someone looks on.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+
+#include "drivers/lcm/lcm_publisher.h"
+#include "drivers/viewer/viewer.h"
+#include "geometry/camera.h"
+#include "pipeline/live_run.h"
+#include "service/background_work.h"
+
+namespace edgeslam {
+
+// For the publishing thread.
+class MapPublisher {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  // `interval_s`: SLAM_MAP at most so often where the map changed; 0: on request only. `viewer` may be null. What is
+  // referred to outlives it; work that was begun may outlive this object.
+  MapPublisher(const Camera& camera, double interval_s, LcmPublisher& publisher, Viewer* viewer, BackgroundWork& work);
+
+  void begin(LiveRun& run);
+  void end() { is_wanted_ = false; }
+
+  // SLAM_MAP follows as soon as the map is there.
+  void ask();
+  void everySecond(Clock::time_point now);
+  // One that the run was asked for, by whomever.
+  void mapCame(const std::shared_ptr<const Map>& map);
+
+ private:
+  void publishWhereChanged(Clock::time_point now);
+  void showWhereChanged(Clock::time_point now);
+
+  const Camera camera_;
+  const double interval_s_;
+  LcmPublisher& publisher_;
+  Viewer* viewer_;
+  BackgroundWork& work_;
+  LiveRun* run_ = nullptr;  // from begin() on
+
+  bool is_wanted_ = false;  // for SLAM_MAP
+  Clock::time_point next_time_{};
+  std::int64_t published_changes_ = 0, version_ = 0;
+  Clock::time_point next_shown_time_{};
+  std::int64_t shown_changes_ = -1;  // of the map that the viewer has; -1: it has none
+};
+
+}  // namespace edgeslam

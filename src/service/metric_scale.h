@@ -1,0 +1,71 @@
+// The metric scale of the map that the run is in: set by command, come with a saved map, or found by itself. Poses go
+// out with it, and the log is told of it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "drivers/lcm/lcm_publisher.h"
+#include "map/map.h"
+#include "scale/scale_from_distance.h"
+#include "scale/scale_options.h"
+#include "scale/scale_search.h"
+#include "service/background_work.h"
+#include "service/command_answers.h"
+#include "service/event_log.h"
+
+namespace edgeslam {
+
+// For the publishing thread.
+class MetricScale {
+ public:
+  // `body_T_camera`: translation [m]. The others outlive it; work that was begun may outlive this object.
+  MetricScale(const ScaleOptions& options, const Pose& body_T_camera, LcmPublisher& publisher, BackgroundWork& work,
+              EventLog& log);
+
+  // Another map was begun: the scale was that of a map that is no more.
+  void forget();
+  // A saved map was gone on with: what the configuration says of its scale.
+  void takeConfigured();
+  // By a loop: positions before and after do not go together.
+  void mapWasCorrected();
+  bool isKnown() const { return kind_ != ScaleKind::unknown; }
+
+  // Each frame, in order.
+  void frame(const FrameResult& result);
+  // The wheels', all that came.
+  void takeOdometry();
+  // A command set_scale.
+  CommandOutcome set(const Command& command);
+
+  // `seconds` since the start of the program; the map now `has_points`. True where it is wanted, to look for the
+  // ground: mapCame() then.
+  bool everySecond(double seconds, bool has_points);
+  void mapCame(const std::shared_ptr<const Map>& map);
+  // A map that was wanted does not come any more.
+  void runEnded() { ground_wanted_ = false; }
+
+  // Why it is not known, or not renewed; or empty.
+  std::string problem() const;
+
+ private:
+  void take(const ScaleState& found);
+  void tellProblem();
+
+  const ScaleOptions options_;
+  const Pose body_T_camera_;
+  LcmPublisher& publisher_;
+  BackgroundWork& work_;
+  EventLog& log_;
+  PositionHistory history_;
+  ScaleSearch search_;
+  ScaleKind kind_ = ScaleKind::unknown;
+  bool ground_wanted_ = false;           // of the map that was asked for
+  KeyframeId ground_keyframe_ = -1;      // the latest of the map in which it was looked for
+  std::int64_t ground_looks_void_ = 0;   // counts what makes looks under way worthless
+  std::set<std::string> told_problems_;  // without their numbers
+};
+
+}  // namespace edgeslam

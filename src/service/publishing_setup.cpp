@@ -1,0 +1,18 @@
+#include "service/publishing_setup.h"
+
+namespace edgeslam {
+
+PublishingSetup publishingSetup(const Configuration& configuration, const Camera& camera) {
+  const ServiceOptions& service = configuration.service;
+  PublishingSetup setup;
+  setup.lcm = service.lcm;
+  setup.lcm.real_time_priority = configuration.settings.threads.publishing_priority;
+  setup.map_interval_s = service.map_interval_s;
+  setup.body_T_camera = configuration.body_T_camera;
+  setup.camera = camera;
+  setup.scale = service.scale;
+  if (service.scale.source == "odometry") setup.lcm.wheels_channel = service.scale.odometry.channel;
+  return setup;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,28 @@
+// What the log is told of a run as it goes: changes of its state, messages that do not go out, and what mapping found.
+#pragma once
+
+#include <string>
+
+#include "pipeline/messages.h"
+#include "service/event_log.h"
+
+namespace edgeslam {
+
+// For the publishing thread.
+class RunLog {
+ public:
+  // `log` outlives it.
+  explicit RunLog(EventLog& log) : log_(log) {}
+
+  // Loops, and frames that were found again.
+  void report(const MappingReport& report);
+  // Each second, so that there is at most a line of each kind a second. Empty `state`: none to tell; empty
+  // `lcm_problem`: messages go out.
+  void tellChanges(const std::string& state, const std::string& lcm_problem);
+
+ private:
+  EventLog& log_;
+  std::string told_state_, told_lcm_problem_;  // last
+};
+
+}  // namespace edgeslam

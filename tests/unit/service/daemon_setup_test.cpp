@@ -1,0 +1,31 @@
+#include "service/daemon_setup.h"
+
+#include <gtest/gtest.h>
+
+namespace edgeslam {
+namespace {
+
+TEST(DaemonSetup, OnlyCommandsThatCanBeCarriedOutAreOffered) {
+  DaemonSetup setup;
+  setup.for_viewing = true;
+  EXPECT_EQ(commandsOf(setup), (std::vector<std::string>{"reset", "set_scale"}));
+  setup.for_viewing = false;
+  setup.map_out = "robot.map";
+  setup.configuration.service.recordings_folder = "recordings";
+  EXPECT_EQ(commandsOf(setup), (std::vector<std::string>{"reset", "set_scale", "save_map", "start_recording",
+                                                         "stop_recording", "send_map"}));
+}
+
+TEST(DaemonSetup, NeedsTheHighestPriorityAndTheFolderThatIsWrittenTo) {
+  DaemonSetup setup;
+  setup.configuration.settings.threads.capture_priority = 12;
+  setup.configuration.settings.threads.tracking_priority = 55;
+  setup.map_out = "/srv/maps/robot.map";
+  EXPECT_EQ(startNeeds(setup).real_time_priority, 55);
+  EXPECT_EQ(startNeeds(setup).folder, "/srv/maps");
+  setup.configuration.service.recordings_folder = "/srv/recordings";
+  EXPECT_EQ(startNeeds(setup).folder, "/srv/recordings");
+}
+
+}  // namespace
+}  // namespace edgeslam

@@ -1,0 +1,89 @@
+#include "service/metric_scale.h"
+
+#include "scale/utime.h"
+#include "unit/lcm/made_frames.h"
+#include "unit/service/made_service.h"
+
+namespace edgeslam {
+namespace {
+
+class MetricScaleTest : public MadeService {
+ protected:
+  // Along x, 0.1 map units a frame; then "from the first frame to the last it was 2 m".
+  CommandOutcome walkAndSet(MetricScale& scale) {
+    for (int i = 0; i <= 40; ++i) scale.frame(measuredFrame(i, {Eigen::Quaterniond::Identity(), {0.1 * i, 0, 0}}));
+    Command command;
+    command.kind = CommandKind::set_scale;
+    command.from_utime = utimeOf(measuredFrame(0, Pose()).time_ns);
+    command.to_utime = utimeOf(measuredFrame(40, Pose()).time_ns);
+    command.distance_m = 2;
+    return scale.set(command);
+  }
+
+  ScaleOptions options_;
+};
+
+TEST_F(MetricScaleTest, ADistanceSetsItAndAnotherMapForgetsIt) {
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  EXPECT_FALSE(scale.isKnown());
+  const CommandOutcome outcome = walkAndSet(scale);
+  EXPECT_TRUE(outcome.accepted) << outcome.message;
+  EXPECT_TRUE(scale.isKnown());
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 0.5, 1e-9);
+  EXPECT_EQ(scale.problem(), "");
+  scale.forget();
+  EXPECT_FALSE(scale.isKnown());
+  EXPECT_EQ(publisher_.scale().kind, ScaleKind::unknown);
+  EXPECT_EQ(said(), "edgeslam: " + outcome.message + "\nedgeslam: the scale is unknown again: another map was begun\n");
+}
+
+TEST_F(MetricScaleTest, ADistanceBetweenFramesOfTwoMapsIsRefused) {
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  scale.frame(measuredFrame(0, Pose()));
+  scale.mapWasCorrected();
+  Command command;
+  command.kind = CommandKind::set_scale;
+  command.from_utime = utimeOf(measuredFrame(0, Pose()).time_ns);
+  command.to_utime = command.from_utime + 1000000;
+  command.distance_m = 1;
+  const CommandOutcome outcome = scale.set(command);
+  EXPECT_FALSE(outcome.accepted);
+  EXPECT_FALSE(outcome.message.empty());
+  EXPECT_FALSE(scale.isKnown());
+}
+
+TEST_F(MetricScaleTest, ASavedMapBringsWhatIsConfigured) {
+  MetricScale none(options_, Pose(), publisher_, work_, log_);
+  none.takeConfigured();
+  EXPECT_FALSE(none.isKnown());
+  options_.metres_per_unit = 0.25;
+  options_.sigma = 0.03;
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  scale.takeConfigured();
+  EXPECT_TRUE(scale.isKnown());
+  EXPECT_EQ(publisher_.scale().metres_per_unit, 0.25);
+  EXPECT_EQ(publisher_.scale().sigma, 0.03);
+}
+
+TEST_F(MetricScaleTest, TheMapIsWantedForTheGroundOnceItHasPoints) {
+  options_.source = "camera_height";
+  options_.height.camera_height_m = 0.3;
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  EXPECT_FALSE(scale.everySecond(0, /*has_points=*/false));
+  EXPECT_TRUE(scale.everySecond(1, /*has_points=*/true));
+  EXPECT_FALSE(scale.everySecond(2, /*has_points=*/true)) << "it was asked for a second ago";
+  scale.mapCame(std::make_shared<const Map>());
+  finishWork();
+  EXPECT_FALSE(scale.isKnown());
+}
+
+TEST_F(MetricScaleTest, AProblemIsToldOnceForAMap) {
+  options_.source = "odometry";
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  ASSERT_NE(scale.problem(), "");
+  for (int i = 0; i < 3; ++i) scale.everySecond(i, false);
+  EXPECT_EQ(said(), "edgeslam: the scale is not known yet: " + scale.problem() + "\n");
+}
+
+}  // namespace
+}  // namespace edgeslam
