@@ -13,7 +13,7 @@ import sys
 
 OWN_FOLDERS = ("src/", "drivers/", "tests/", "firmware_cfg/", "docs/", "examples/", "include/", "systemd/", "toolchains/",
                "packaging/", ".ci/")
-PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "docs/**/*.md", "tests/*/README.md")
+PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "docs/**/*.md", "examples/*.md", "tests/*/README.md")
 LONGEST_README = 150  # lines: it is the front door
 CONFIGURATIONS = ("firmware_cfg/edgeslam.yaml", "firmware_cfg/expert.yaml")
 # Sources whose comments are read, and how a comment begins in each.
