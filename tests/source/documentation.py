@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks what the documentation says against the repository: links and their headings, paths, keys of the configuration, the
-example driver, the drawing, the length of README.md. And what comments of the sources say of it: paths, and sections of
+example driver, the drawing, the length of README.md, the folders in the design. And what comments of the sources say of it: paths, and sections of
 docs/design.md with the topics that they name.
 
 usage: documentation.py REPOSITORY     exit status 1 where something is not there
@@ -110,6 +110,13 @@ def numbered_sections(page):
     return {number: re.sub(r"\s+", " ", text).lower() for number, text in zip(parts[1::2], parts[2::2])}
 
 
+def wrong_folders(folders, layout):
+    """`folders`: those of src/ and drivers/; `layout`: the section of docs/design.md with a row for each."""
+    described = set(re.findall(r"\| `(\w+)` \|", layout))
+    return ([f"docs/design.md: section 3 has no row for the folder {name}" for name in sorted(folders - described)] +
+            [f"docs/design.md: section 3 has a row for {name}, which is no folder" for name in sorted(described - folders)])
+
+
 def wrong_comments(name, source, sections, is_there):
     """`sections`: of docs/design.md."""
     problems = []
@@ -157,6 +164,7 @@ def check(repository):
     if lines > LONGEST_README:
         problems.append(f"README.md: has {lines} lines, at most {LONGEST_README}: move some to docs/")
     sections = numbered_sections(read("docs/design.md"))
+    problems += wrong_folders(stages, sections["3"])
     for path in (path for folder in SOURCE_FOLDERS for path in sorted((repository / folder).rglob("*"))):
         if path.suffix in COMMENT_SIGNS and path != pathlib.Path(__file__).resolve() and "corpus" not in path.parts:
             problems += wrong_comments(str(path.relative_to(repository)), path.read_text(encoding="utf-8"), sections, is_there)
@@ -186,11 +194,14 @@ int a;  // design, section 5: flow, "b"
 // mirrors it. design, section 5: low
 "design, section 7"
 """
+    found += wrong_folders({"flow", "edges"}, "| folder | what | |---|---| | `flow` | follows `points` | | `old` | was |")
     found += wrong_comments("src/a.h", source, sections, lambda path: path in ("docs/c.md", "docs/design.md"))
     found += wrong_comments("tests/a.py", "#!/bin/b\n# design, section 8\n", sections, lambda path: False)
     expected = ["README.md: docs/none.md: there is no docs/none.md", "README.md: #none: no such heading",
                 "docs/c.md: #gone: no such heading", "docs/c.md: `src/gone.h` is not there",
                 "docs/c.md: `flow/gone` is not there", "docs/c.md: `map.fil` is no key of the configuration",
+                "docs/design.md: section 3 has no row for the folder edges",
+                "docs/design.md: section 3 has a row for old, which is no folder",
                 "src/a.h: docs/design.md has no section 6", "src/a.h: section 5 of docs/design.md says nothing of 'low'",
                 "src/a.h: docs/none.md is not there", "tests/a.py: docs/design.md has no section 8"]
     if found != expected:
