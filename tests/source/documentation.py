@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks what the documentation says against the repository: links and their headings, paths, keys of the configuration, the
-example driver, the drawing, the length of README.md, the folders in the design. And what comments of the sources say of it: paths, and sections of
-docs/design.md with the topics that they name.
+example driver, the drawing, the length of README.md, the folders in the design. And what comments of the sources say of it:
+paths, and sections of docs/design.md with the topics that they name.
 
 usage: documentation.py REPOSITORY     exit status 1 where something is not there
        documentation.py --self-test"""
