@@ -23,5 +23,5 @@ cat > "$folder/camera.yaml" <<'EOF'
 EOF
 echo "camera: {calibration: $folder/camera.yaml}" > "$folder/robot.yaml"
 "$folder/find_package/edgeslam_user" "$folder/robot.yaml"
-said=$("$folder/examples/track_images" "$folder/robot.yaml" "$folder/none" 2>&1 || true)
-[[ $said == "track_images: "*none* ]] || { echo "of a folder that is not there the example says: $said"; exit 1; }
+said=$("$folder/examples/1_images_to_poses" "$folder/robot.yaml" "$folder/none" 2>&1 || true)
+[[ $said == "1_images_to_poses: "*none* ]] || { echo "of a folder that is not there the example says: $said"; exit 1; }

@@ -89,7 +89,7 @@ build_against_library() {
   run_or_fail "the example does not build" sh -c "cmake -S /tmp/examples -B /tmp/examples/build && cmake --build /tmp/examples/build"
   mkdir "$root/tmp/frames"
   python3 "$sources/tests/package/pgm_folder.py" "$root/tmp/recording" "$root/tmp/frames"
-  run_or_fail "the example does not run" sh -c "/tmp/examples/build/track_images /tmp/robot.yaml /tmp/frames > /tmp/trajectory.txt"
+  run_or_fail "the example does not run" sh -c "/tmp/examples/build/1_images_to_poses /tmp/robot.yaml /tmp/frames > /tmp/trajectory.txt"
   local poses
   poses=$(wc -l < "$root/tmp/trajectory.txt")
   ((poses >= 10)) || fail "the example gives $poses poses"

@@ -14,8 +14,7 @@ import sys
 # What says why a frame has no measured pose, why it cannot be read, why there is no camera, and no scale. Beside each its
 # literals that are no reasons.
 SOURCES = {
-    "src/tracking/tracker.cpp": [],
-    "src/tracking/tracker_map.cpp": ["first", "recovery"],  # of keyframes
+    "src/tracking/tracker.cpp": ["first", "recovery"],  # of keyframes
     "src/pipeline/tracking_worker.cpp": [],
     "src/pipeline/mapping_worker.cpp": [  # events
         "recovered from three keyframes, ", " points", "relocalised at keyframe "],
@@ -190,7 +189,7 @@ def check(repository):
     page = read("docs/states.md")
     problems = check_reasons(page, {path: (read(path), others) for path, others in SOURCES.items()},
                              {path: (read(path), wanted) for path, wanted in SINGLE_PIECES.items()})
-    problems += check_states(page, read("src/pipeline/run_result.cpp"), read("drivers/lcm/types/state_t.lcm"),
+    problems += check_states(page, read("src/tracking/frame_result.cpp"), read("drivers/lcm/types/state_t.lcm"),
                              read("drivers/viewer/page/view.js"))
     return problems + check_other_sources(repository)
 

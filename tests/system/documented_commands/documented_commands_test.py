@@ -29,12 +29,14 @@ HEARD = "file://heard.log?speed=0"
 
 
 def pages():
-    return [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
+    """{page's name, as docs/calibrating.md: its text}"""
+    found = [path for pattern in ("*.md", "docs/**/*.md") for path in sorted(REPOSITORY.glob(pattern))]
+    return {str(path.relative_to(REPOSITORY)): path.read_text(encoding="utf-8") for path in found}
 
 
 def documented():
     """{page's name: its commands}"""
-    return {page.name: commands_of(page.read_text(encoding="utf-8")) for page in pages()}
+    return {name: commands_of(text) for name, text in pages().items()}
 
 
 def run(words, folder, **environment):
@@ -87,11 +89,11 @@ class Prepared:
 
     def for_page(self, page, folder):
         """A copy, less what the page's own commands make."""
-        target = pathlib.Path(folder) / page
+        target = pathlib.Path(folder) / page.replace("/", "_")
         shutil.copytree(self.folder, target)
-        if page in ("debugging.md",):
+        if page in ("docs/debugging.md",):
             shutil.rmtree(target / "failure")
-        if page in ("calibrating.md",):  # its robot's camera looks at the board
+        if page in ("docs/calibrating.md",):  # its robot's camera looks at the board
             shutil.copyfile(target / "board_robot.yaml", target / "my_robot.yaml")
         return target
 
@@ -166,13 +168,13 @@ class DocumentedCommands(unittest.TestCase):
 
     def test_every_configuration_is_a_good_one(self):
         checked = 0
-        for page in pages():
-            folder = self.prepared.for_page("configurations_" + page.name, self.folder.name)
+        for page, markdown in pages().items():
+            folder = self.prepared.for_page("configurations/" + page, self.folder.name)
             shutil.copyfile(folder / "cameras/my_camera.yaml", folder / "camera.yaml")
-            for text in configurations_of(page.read_text(encoding="utf-8")):
+            for text in configurations_of(markdown):
                 if text in how_they_run.NO_CONFIGURATIONS:
                     continue
-                with self.subTest(page=page.name, configuration=text):
+                with self.subTest(page=page, configuration=text):
                     for placeholder, value in how_they_run.IN_CONFIGURATIONS.items():
                         text = re.sub(rf"(?<![\w]){re.escape(placeholder)}(?![\w])", value, text)
                     (folder / "documented.yaml").write_text(text, encoding="utf-8")

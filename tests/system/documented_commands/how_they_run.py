@@ -53,7 +53,7 @@ INSTEAD = {
     "[--exposure MS] [--noise GREY] [--speed FACTOR] [--cover|--shake|--still|--turn FIRST:COUNT] [--force]": Instead(
         SYNOPSIS, [f"edgeslam simulate {scene} --output made --seed 2 --fps 20 {SMALL} --fisheye --exposure 2 --noise 3 "
                    "--speed 2 --cover 0:1 --shake 1:1 --still 2:1 --turn 2:1 --force"
-                   for scene in ("panels", "panels_textured", "room", "corridor")]),
+                   for scene in ("panels", "panels_textured", "room", "corridor", "corridor_tiled")]),
     "edgeslam calibrate board --columns N --rows N --square LENGTH --output PDF "
     "[--type chessboard|charuco|aprilgrid] [--paper A4]": Instead(
         SYNOPSIS, [f"edgeslam calibrate board --columns 6 --rows 5 --square 26mm --output {kind}.pdf --type {kind} --paper A4"
