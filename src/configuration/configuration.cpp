@@ -109,10 +109,15 @@ class Reader {
     const ConfigurationKey* key = find(path);
     if (!key) return tellUnknown(line, path);
     if (!key->hasField()) return;  // its section's reader takes it
+    if (std::holds_alternative<std::string*>(key->field)) {
+      const std::string wrong = value.IsScalar() ? setValue(*key, value.Scalar()) : "a text is expected";
+      if (!wrong.empty()) tell(line, path + ": " + wrong);
+      return;
+    }
     std::string wrong;
     if (!value.IsScalar()) {
       wrong = value.IsNull() ? "has no value" : "a list or mapping";
-    } else if (value.Tag() != "?" && !std::holds_alternative<std::string*>(key->field)) {  // quoted
+    } else if (value.Tag() != "?") {  // quoted, or marked as of another type
       wrong = "\"" + value.Scalar() + "\" is a text";
     } else {
       wrong = setValue(*key, value.Scalar());

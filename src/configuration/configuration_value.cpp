@@ -50,7 +50,7 @@ std::string setValue(const ConfigurationKey& key, const std::string& text) {
     return "";
   }
   if (const auto* field = std::get_if<std::string*>(&key.field)) {
-    if (text.empty() || text.size() > longest_text) return "'" + text.substr(0, 20) + "' has no or too many letters";
+    if (text.empty() || text.size() > longest_text) return "a text of 1 to 1000 letters is expected";
     **field = text;
     return "";
   }

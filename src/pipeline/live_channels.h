@@ -8,11 +8,11 @@
 #include <string>
 
 #include "pipeline/channel.h"
-#include "tracking/frame_result.h"
 #include "pipeline/frame_slots.h"
 #include "pipeline/messages.h"
 #include "pipeline/semaphore.h"
 #include "pipeline/triple_buffer.h"
+#include "tracking/frame_result.h"
 
 namespace edgeslam {
 

@@ -118,7 +118,7 @@ void addPoints(const cv::Mat& grey) {
   auto edges = std::make_shared<EdgeMap>(detectEdges(grey, {}));
   auto workspace = std::make_shared<PointChoiceWorkspace>();
   auto chosen = std::make_shared<std::vector<ChosenPoint>>();
-  choosePoints(grey, *edges, {}, {}, *workspace, *chosen);
+  choosePoints(grey, *edges, {}, {}, {}, *workspace, *chosen);
   std::vector<cv::Rect> windows;
   for (const ChosenPoint& point : *chosen) {
     const cv::Rect window(static_cast<int>(point.pixel.x()) - 7, static_cast<int>(point.pixel.y()) - 7, 15, 15);
@@ -138,10 +138,10 @@ void addPoints(const cv::Mat& grey) {
   auto spacing = std::make_shared<PointSpacing>(grey.size(), PointChoiceOptions().spacing);
   addTimed("candidates/ours", [=] {
     candidates->clear();
-    findPointCandidates(grey, *edges, *spacing, {}, *candidates);
+    findPointCandidates(grey, *edges, *spacing, {}, {}, *candidates);
   });
   addTimed("candidates/cornerMinEigenVal", [=] { cv::cornerMinEigenVal(grey, *gradients, 15, 3); });
-  addTimed("points/ours", [=] { choosePoints(grey, *edges, {}, {}, *workspace, *chosen); });
+  addTimed("points/ours", [=] { choosePoints(grey, *edges, {}, {}, {}, *workspace, *chosen); });
   auto corners = std::make_shared<std::vector<cv::Point2f>>();
   addTimed("points/goodFeaturesToTrack", [=] { cv::goodFeaturesToTrack(grey, *corners, 550, 0.01, 6); });
 }

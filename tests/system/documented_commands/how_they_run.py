@@ -65,8 +65,9 @@ INSTEAD = {
          "pinhole_radial_tangential --force",
          "edgeslam calibrate --camera board_camera --board chessboard:9x6:25mm --output second.yaml --seconds 60",
          "edgeslam calibrate --config board_robot.yaml --board chessboard:9x6:25mm --output third.yaml"]),
-    "edgeslam check-config FILE | --print-default": Instead(
-        SYNOPSIS, ["edgeslam check-config my_robot.yaml", "edgeslam check-config --print-default"]),
+    "edgeslam check-config FILE | --print-default | --print-expert": Instead(
+        SYNOPSIS, ["edgeslam check-config my_robot.yaml", "edgeslam check-config --print-default",
+                   "edgeslam check-config --print-expert"]),
     "edgeslam check-config FILE": Instead(PLACEHOLDERS, ["edgeslam check-config my_robot.yaml"]),
     "edgeslam cameras [--json]": Instead(SYNOPSIS, ["edgeslam cameras", "edgeslam cameras --json"]),
     "edgeslam record [DEVICE] --output DIR [--config FILE] [--calibration FILE] [--seconds S] [--frames N] "

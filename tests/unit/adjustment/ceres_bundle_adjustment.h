@@ -5,7 +5,7 @@
 
 namespace edgeslam::test {
 
-// Adjusts the problem in place; `scale_camera` and `interrupted` are ignored. The number of iterations, or -1 where
+// Adjusts the problem in place; `scale_camera` is ignored. The number of iterations, or -1 where
 // Ceres found no usable solution.
 int adjustBundleByCeres(const Camera& camera, BundleProblem& problem, const BundleOptions& options);
 

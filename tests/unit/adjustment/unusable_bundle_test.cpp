@@ -125,9 +125,7 @@ TEST(UnusableBundle, InterruptedLeavesTheProblem) {
   BundleProblem problem = perturbedProblem(random, scene.truth, 0.02, 0.01);
   const BundleProblem before = problem;
   const std::atomic<bool> interrupted{true};
-  BundleOptions options;
-  options.interrupted = &interrupted;
-  EXPECT_FALSE(adjustBundle(scene.camera, problem, options).usable);
+  EXPECT_FALSE(adjustBundle(scene.camera, problem, {}, &interrupted).usable);
   EXPECT_TRUE(sameBytes(problem, before));
 }
 

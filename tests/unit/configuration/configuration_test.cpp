@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "configuration/configuration_text.h"
 #include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
@@ -40,9 +41,9 @@ TEST(Configuration, AnEmptyFileGivesTheDefaults) {
 
 TEST(Configuration, ReadsWhatIsGivenAndLeavesTheRest) {
   const Configuration read = configurationOf("edges:\n  sigma: 2.5\npoints: {count: 300}\n");
-  EXPECT_EQ(read.settings.tracking.edges.sigma, 2.5);
-  EXPECT_EQ(read.settings.tracking.points.count, 300);
-  EXPECT_EQ(read.settings.tracking.edges.sigma_ratio, Settings{}.tracking.edges.sigma_ratio);
+  EXPECT_EQ(read.settings.edges.sigma, 2.5);
+  EXPECT_EQ(read.settings.points.count, 300);
+  EXPECT_EQ(read.settings.edges.sigma_ratio, Settings{}.edges.sigma_ratio);
   EXPECT_FALSE(read.camera);
 }
 
@@ -112,7 +113,7 @@ TEST(Configuration, HostileTextIsRefusedWithoutHarm) {
 }
 
 TEST(Configuration, EveryTruncationOfTheDefaultsIsReadOrRefused) {
-  const std::string whole = defaultConfigurationText();
+  const std::string whole = usersConfigurationText();
   const TemporaryFolder folder;
   int refused = 0;
   for (std::size_t length = 0; length < whole.size(); length += 29) {
@@ -131,8 +132,8 @@ TEST(Configuration, WhatItSaysItselfCountsOverWhatItIncludes) {
   for (const char* text :
        {"include: ../base.yaml\npoints: {count: 400}\n", "points: {count: 400}\ninclude: ../base.yaml\n"}) {
     const Configuration read = readConfiguration(folder.write("robots/robot.yaml", text));
-    EXPECT_EQ(read.settings.tracking.points.count, 400) << text;
-    EXPECT_EQ(read.settings.tracking.points.spacing, 9);
+    EXPECT_EQ(read.settings.points.count, 400) << text;
+    EXPECT_EQ(read.settings.points.spacing, 9);
     ASSERT_TRUE(read.camera) << "named relative to the file that names it";
     EXPECT_EQ(read.camera->fx, 500);
     EXPECT_EQ(read.source, folder.path("robots/robot.yaml"));
@@ -176,17 +177,24 @@ TEST(Configuration, TheEffectiveConfigurationReadsBackAsTheSame) {
   EXPECT_NE(text, formatConfiguration(Configuration{}));
 }
 
-TEST(Configuration, TheDefaultsTextGivesTheDefaults) {
+TEST(Configuration, TheDocumentedFilesGiveTheDefaults) {
   const std::string defaults = formatConfiguration(Configuration{});
-  EXPECT_EQ(formatConfiguration(configurationOf(defaultConfigurationText())), defaults);
+  EXPECT_EQ(formatConfiguration(configurationOf(usersConfigurationText())), defaults);
+  EXPECT_EQ(formatConfiguration(configurationOf(expertConfigurationText())), defaults);
 }
 
-TEST(Configuration, TheCommittedFileIsWhatTheTableGenerates) {
-  std::ifstream file(EDGESLAM_SOURCE_DIR "/firmware_cfg/edgeslam.yaml");
+std::string committed(const std::string& name) {
+  std::ifstream file(EDGESLAM_SOURCE_DIR "/firmware_cfg/" + name);
   std::ostringstream text;
   text << file.rdbuf();
-  EXPECT_EQ(text.str(), defaultConfigurationText())
+  return text.str();
+}
+
+TEST(Configuration, TheCommittedFilesAreWhatTheTableGenerates) {
+  EXPECT_EQ(committed("edgeslam.yaml"), usersConfigurationText())
       << "write it anew: edgeslam check-config --print-default > firmware_cfg/edgeslam.yaml";
+  EXPECT_EQ(committed("expert.yaml"), expertConfigurationText())
+      << "write it anew: edgeslam check-config --print-expert > firmware_cfg/expert.yaml";
 }
 
 }  // namespace

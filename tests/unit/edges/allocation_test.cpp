@@ -92,7 +92,7 @@ TEST(Allocation, NoneOnTheWayToEdgesAndPointsAfterTheFirstImage) {
   if (!EDGESLAM_COUNTS_ALLOCATIONS) GTEST_SKIP() << "not under this sanitizer";
   const std::vector<cv::Mat> images = variedImages();
   const EdgeOptions edge_options;
-  const PointChoiceOptions point_options;
+  const PointSpread point_options;
   ImagePyramid pyramid;
   EdgeWorkspace edge_workspace;
   EdgeMap edges = makeEdgeMap(kSize);
@@ -105,7 +105,7 @@ TEST(Allocation, NoneOnTheWayToEdgesAndPointsAfterTheFirstImage) {
     const int of_pyramid = allocationsOf([&] { buildPyramid(image, 4, pyramid); });
     const int of_edges = allocationsOf([&] { detectEdges(pyramid.levels[0], edge_options, edge_workspace, edges); });
     const int of_points =
-        allocationsOf([&] { choosePoints(image, edges, occupied, point_options, point_workspace, chosen); });
+        allocationsOf([&] { choosePoints(image, edges, occupied, point_options, {}, point_workspace, chosen); });
     const int of_queries = allocationsOf([&] {
       sum += sharpness(image, edges);
       for (const ChosenPoint& point : chosen) {

@@ -53,41 +53,5 @@ TEST(ImageNoise, IsBoundedWhateverTheImage) {
   }
 }
 
-TEST(ImageNoise, OnlyWhatIsMoreThanUsualIsAdded) {
-  const PointChoiceOptions usual;
-  EXPECT_EQ(withNoiseOf(withNoise(flat(120), 2, 1), usual).excess_noise, 0);
-  const PointChoiceOptions dim = withNoiseOf(withNoise(flat(120), 5, 1), usual);
-  EXPECT_NEAR(dim.excess_noise, gradientVariance(5) - usual.noise, 1.5);
-  EXPECT_EQ(dim.noise, usual.noise);
-  // Of the image at hand, not of the one before.
-  EXPECT_EQ(withNoiseOf(flat(120), dim).excess_noise, 0);
-}
-
-double cornerShare(const cv::Mat& image, const PointChoiceOptions& options) {
-  const std::vector<ChosenPoint> points = choosePoints(image, detectEdges(image, {}), {}, options);
-  EXPECT_GT(points.size(), 20U);
-  const auto corners = std::count_if(points.begin(), points.end(), [](const ChosenPoint& p) { return p.corner; });
-  return static_cast<double>(corners) / static_cast<double>(points.size());
-}
-
-TEST(ImageNoise, InDimLightAStraightEdgeIsNotCornerLike) {
-  const cv::Mat dim = withNoise(renderLine(size, lineThrough(160, 120, 20), 50, 85), 5, 2);
-  EXPECT_GT(cornerShare(dim, {}), 0.8) << "without the image's noise";
-  EXPECT_LT(cornerShare(dim, withNoiseOf(dim, {})), 0.2);
-}
-
-TEST(ImageNoise, InDimLightACornerIsStillOne) {
-  const cv::Mat board = withNoise(renderCheckerboard(size, 40), 5, 2);
-  const PointChoiceOptions options = withNoiseOf(board, {});
-  EXPECT_GT(options.excess_noise, 5);
-  for (const ChosenPoint& point : choosePoints(board, detectEdges(board, {}), {}, options)) {
-    const Eigen::Vector2f in_square(std::fmod(point.pixel.x() + 0.5F, 40.F), std::fmod(point.pixel.y() + 0.5F, 40.F));
-    const auto fromCorner = [](float along) { return std::min(along, 40 - along); };
-    const float distance = std::max(fromCorner(in_square.x()), fromCorner(in_square.y()));
-    if (distance > 3 && distance < 12) continue;  // the window has part of the corner
-    EXPECT_EQ(point.corner, distance <= 3) << point.pixel.transpose();
-  }
-}
-
 }  // namespace
 }  // namespace edgeslam

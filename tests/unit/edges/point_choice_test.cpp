@@ -50,7 +50,7 @@ TEST(PointChoice, CornersComeFirstAndTakeNoMoreThanTheirShare) {
   ASSERT_EQ(points.size(), 60U);
   for (size_t i = 0; i < 30; ++i) {
     ASSERT_TRUE(points[i].corner) << i;
-    EXPECT_EQ(points[i].sigma_normal, static_cast<float>(options.sigma_corner));
+    EXPECT_EQ(points[i].sigma_normal, static_cast<float>(options.accuracy.sigma_corner));
   }
   // The first of all lie on the squares' corners: 7 x 5 of them, of which the share allows 30.
   for (size_t i = 0; i < 20; ++i) {
@@ -70,7 +70,7 @@ TEST(PointChoice, BarHasEdgesOnlyAndTheyAreLooseAlongIt) {
   int rising = 0;
   for (const ChosenPoint& point : points) {
     EXPECT_FALSE(point.corner);
-    EXPECT_EQ(point.sigma_normal, static_cast<float>(PointChoiceOptions().sigma_edge));
+    EXPECT_EQ(point.sigma_normal, static_cast<float>(PointAccuracyOptions().sigma_edge));
     EXPECT_GT(point.sigma_tangent, 10 * point.sigma_normal);
     EXPECT_LE(point.sigma_tangent, 1000);
     const double distance = line.distance(point.pixel.x(), point.pixel.y());

@@ -16,6 +16,7 @@ inline TrackedFrame seen(const Camera& camera, const EdgeScene& scene, const Pos
   frame.time_ns = 33'333'333 * frame_index;
   frame.world_T_camera = world_T_camera;
   frame.observations = observeAll(camera, scene, world_T_camera, Sight(), random);
+  frame.kind = keyframe == 0 ? FrameKind::first : keyframe < 0 ? FrameKind::start : FrameKind::keyframe;
   frame.keyframe = keyframe;
   frame.reason = "interval";
   return frame;

@@ -39,6 +39,7 @@ Start run(
     frame.observations = test::observeAll(camera, scene, path(i), sight, random);
     spoil(i, frame.observations, random);
     if (i == 0) {
+      frame.kind = FrameKind::first;
       frame.keyframe = 0;
       start.initialisation.start(frame);
       view = flatView(frame);

@@ -60,7 +60,8 @@ MappingWorker workerIn(const EdgeScene& scene, const std::vector<Pose>& poses) {
 MappingMessage lostIn(const EdgeScene& scene, std::int64_t number, const Pose& pose, KeyframeId keyframe) {
   MappingMessage message = seenIn(scene, number, pose, keyframe);
   message.frame.world_T_camera = Pose{rotationExp({1, 2, 3}), {7, 8, 9}};  // is not known
-  message.lost = message.recover = true;
+  message.frame.kind = FrameKind::lost;
+  message.recover = true;
   message.last_good_pose = Pose();
   return message;
 }
@@ -307,7 +308,7 @@ const Map& place() {
 MappingMessage lostInRoom(std::int64_t number, std::uint64_t room, const Pose& pose) {
   MappingMessage message;
   message.number = number;
-  message.lost = true;
+  message.frame.kind = FrameKind::lost;
   message.frame.frame_index = 10 * number;
   message.frame.keyframe = 100;
   auto images = std::make_shared<FrameImages>();

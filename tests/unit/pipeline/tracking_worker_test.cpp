@@ -59,7 +59,7 @@ struct Followed {
   std::vector<MappingMessage> questions() const {
     std::vector<MappingMessage> asked;
     for (const MappingMessage& message : messages) {
-      if (message.lost) asked.push_back(message);
+      if (message.frame.kind == FrameKind::lost) asked.push_back(message);
     }
     return asked;
   }
@@ -96,7 +96,7 @@ TEST(TrackingWorker, BeforeTheMapEveryFrameIsAMessageAndNoneHasAPose) {
     EXPECT_EQ(messages[i].number, static_cast<std::int64_t>(i));
     EXPECT_EQ(messages[i].frame.frame_index, static_cast<std::int64_t>(i));
     EXPECT_EQ(messages[i].frame.keyframe, i == 0 ? 0 : -1);
-    EXPECT_FALSE(messages[i].lost);
+    EXPECT_NE(messages[i].frame.kind, FrameKind::lost);
   }
 }
 
@@ -134,7 +134,7 @@ TEST(TrackingWorker, ALostFrameIsAskedForWithAllThatIsKnownOfIt) {
   EXPECT_EQ(lost.reference, -1);
   ASSERT_EQ(run.questions().size(), 1U);
   const MappingMessage& question = run.messages.back();
-  EXPECT_TRUE(question.lost);
+  EXPECT_EQ(question.frame.kind, FrameKind::lost);
   EXPECT_EQ(question.frame.frame_index, 4);
   EXPECT_GE(question.frame.keyframe, 1);
   ASSERT_TRUE(question.frame.images);
@@ -199,7 +199,7 @@ TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
   // Long after the loss the camera is back, but no point is followed there.
   ASSERT_EQ(run.process(90, long_after_ns, imageAt(8)).state, TrackingState::lost);
   const MappingMessage question = run.messages.back();
-  ASSERT_TRUE(question.lost);
+  ASSERT_EQ(question.frame.kind, FrameKind::lost);
   ASSERT_EQ(question.frame.frame_index, 90);
   ASSERT_EQ(run.process(91, long_after_ns + interval_ns / 2, elsewhere()).state, TrackingState::lost);
   EXPECT_EQ(run.messages.back().number, question.number);
@@ -223,7 +223,7 @@ TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
   }
   for (const MappingMessage& message : run.messages) {
     if (message.number <= question.number) continue;
-    EXPECT_FALSE(message.lost);
+    EXPECT_NE(message.frame.kind, FrameKind::lost);
     EXPECT_GT(message.frame.keyframe, question.frame.keyframe);
   }
 }
@@ -297,7 +297,7 @@ TEST(TrackingWorker, InAMapMadeEarlierFramesAreLostUntilOneIsFound) {
   std::vector<MappingMessage> messages;
   EXPECT_EQ(processFrame(worker, 0, long_after_ns, imageAt(4), messages).state, TrackingState::lost);
   ASSERT_EQ(messages.size(), 1U);
-  EXPECT_TRUE(messages[0].lost);
+  EXPECT_EQ(messages[0].frame.kind, FrameKind::lost);
   EXPECT_FALSE(messages[0].last_good_pose);
   EXPECT_FALSE(messages[0].recover) << "no track runs through the map's keyframes";
   MapUpdate answer = earlier.update;
@@ -308,7 +308,7 @@ TEST(TrackingWorker, InAMapMadeEarlierFramesAreLostUntilOneIsFound) {
   EXPECT_EQ(result.state, TrackingState::relocalised) << result.reason;
   EXPECT_LT(distance(result.world_T_camera, path(5)), 0.001);
   for (const MappingMessage& message : messages) {
-    if (message.lost) continue;
+    if (message.frame.kind == FrameKind::lost) continue;
     EXPECT_GE(message.frame.observations.back().point, 10'000);
     EXPECT_GT(message.frame.keyframe, messages[0].frame.keyframe);
   }

@@ -35,7 +35,7 @@ struct SeenRoom {
   GuidedSearchResult search(const GuidedSearchOptions& options) const {
     const Pose start{truth.rotation * rotationExp(Eigen::Vector3d(0.3, -0.5, 0.3) * degree),
                      truth.translation + Eigen::Vector3d(0.01, 0.01, -0.02)};
-    return guidedSearch(camera, map, points, images, edges, start, options);
+    return guidedSearch(camera, map, points, {images, edges, {}}, start, options);
   }
 };
 
@@ -202,8 +202,9 @@ TEST(GuidedSearch, AnotherRoomGivesNoPoseThatIsAccepted) {
   const cv::Mat grey = renderRoom(8, room().camera, room().truth);
   FrameImages images;
   images.pyramid = buildPyramid(grey, 4);
+  const EdgeMap edges = detectEdges(grey, {});
   const GuidedSearchResult found =
-      guidedSearch(room().camera, room().map, room().points, images, detectEdges(grey, {}), room().truth, {});
+      guidedSearch(room().camera, room().map, room().points, {images, edges, {}}, room().truth, {});
   EXPECT_FALSE(found.accepted);
   EXPECT_FALSE(found.reason.empty());
 }

@@ -58,7 +58,7 @@ class LoopCorrectionTest : public testing::Test {
 
   LoopCorrection correctionOf(const Map& map) const {
     const KeyframeId current = kTurn + 1;
-    const LoopVerification loop = verifyLoop(camera, map, current, 1, {}, 1);
+    const LoopVerification loop = verifyLoop(camera, {}, map, current, 1, {}, 1);
     EXPECT_TRUE(loop.accepted) << loop.reason;
     LoopCorrection correction;
     EXPECT_TRUE(computeCorrection(camera, map, current, 1, loop, {}, {}, correction));
@@ -133,7 +133,7 @@ TEST_F(LoopCorrectionTest, AMapThatWentOnGoesAlong) {
 TEST_F(LoopCorrectionTest, LoopClosingFindsTheReturnAndNothingBefore) {
   LoopClosingOptions options;
   options.detection.recent_keyframes = 8;
-  LoopClosing closing(camera, options);
+  LoopClosing closing(camera, {}, options);
   bool closed = false;
   for (std::size_t count = 1; count <= place->keyframes.size(); ++count) {
     const Map map = firstKeyframes(*place, count);
@@ -160,7 +160,7 @@ TEST_F(LoopCorrectionTest, NoDriftIsThatLarge) {
   LoopClosingOptions options;
   options.detection.recent_keyframes = 8;
   options.largest_drift = 1e-4;
-  LoopClosing closing(camera, options);
+  LoopClosing closing(camera, {}, options);
   bool refused = false;
   for (std::size_t count = 1; count <= place->keyframes.size(); ++count) {
     const LoopOutcome outcome = closing.addKeyframe(firstKeyframes(*place, count));

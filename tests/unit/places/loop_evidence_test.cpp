@@ -44,7 +44,7 @@ class LoopEvidence : public testing::Test {
   }
 
   LoopVerification verify(const Map& map, const LoopVerificationOptions& options = onlyDescriptors()) const {
-    return verifyLoop(camera, map, kCurrent, kCandidate, options, 1);
+    return verifyLoop(camera, {}, map, kCurrent, kCandidate, options, 1);
   }
   static LoopVerificationOptions onlyDescriptors() {
     LoopVerificationOptions options;

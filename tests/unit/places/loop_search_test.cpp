@@ -33,7 +33,7 @@ LoopVerificationOptions withoutDescriptors() {
 
 LoopVerification verify(const Map& map, KeyframeId current, KeyframeId candidate,
                         const LoopVerificationOptions& options = withoutDescriptors()) {
-  return verifyLoop(placeCamera(), map, current, candidate, options, 1);
+  return verifyLoop(placeCamera(), {}, map, current, candidate, options, 1);
 }
 
 // 7 % of scale and a degree over the turn.

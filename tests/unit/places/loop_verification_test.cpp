@@ -33,7 +33,7 @@ TEST_F(LoopVerificationTest, FindsTheSimilarityOfADriftedReturn) {
   test::addDrift(0.01, 0.002, map);
   const double scale = std::exp(0.01 * (kTurn + 1));  // of keyframe kTurn + 1 against keyframe 1
   const KeyframeId current = kTurn + 1, candidate = 1;
-  const LoopVerification loop = verifyLoop(camera, map, current, candidate, {}, 1);
+  const LoopVerification loop = verifyLoop(camera, {}, map, current, candidate, {}, 1);
   ASSERT_TRUE(loop.accepted) << loop.reason;
   EXPECT_GE(loop.inliers, loop.needed_inliers);
   EXPECT_GT(loop.found_share, 0.4);
@@ -52,7 +52,7 @@ TEST_F(LoopVerificationTest, FindsTheSimilarityOfADriftedReturn) {
 
 TEST_F(LoopVerificationTest, OtherWallsAreRefusedWithAReason) {
   for (KeyframeId candidate = 7; candidate < kTurn - 4; ++candidate) {
-    const LoopVerification loop = verifyLoop(camera, *place, kTurn + 1, candidate, {}, 1);
+    const LoopVerification loop = verifyLoop(camera, {}, *place, kTurn + 1, candidate, {}, 1);
     EXPECT_FALSE(loop.accepted) << candidate;
     EXPECT_FALSE(loop.reason.empty());
     EXPECT_LT(loop.descriptor_inliers, 15);
@@ -74,18 +74,18 @@ TEST_F(LoopVerificationTest, AnotherRoomIsRefused) {
     for (KeyframeId& keyframe : point.seen_in) keyframe += first;
     map.points.emplace(point.id, point);
   }
-  EXPECT_FALSE(verifyLoop(camera, map, first + 1, 1, {}, 1).accepted);
+  EXPECT_FALSE(verifyLoop(camera, {}, map, first + 1, 1, {}, 1).accepted);
 }
 
 TEST_F(LoopVerificationTest, KeyframesWithoutImagesAreRefused) {
   Map map = *place;
   map.keyframes[1].images = nullptr;
-  EXPECT_FALSE(verifyLoop(camera, map, kTurn + 1, 1, {}, 1).accepted);
+  EXPECT_FALSE(verifyLoop(camera, {}, map, kTurn + 1, 1, {}, 1).accepted);
 }
 
 TEST_F(LoopVerificationTest, EachDemandOnDescriptorsRefuses) {
   const auto refused = [&](const LoopVerificationOptions& options) {
-    return !verifyLoop(camera, *place, kTurn + 1, 1, options, 1).accepted;
+    return !verifyLoop(camera, {}, *place, kTurn + 1, 1, options, 1).accepted;
   };
   LoopVerificationOptions only_descriptors;
   only_descriptors.search.witnesses = 0;
@@ -108,8 +108,8 @@ TEST_F(LoopVerificationTest, EachDemandOnDescriptorsRefuses) {
 }
 
 TEST_F(LoopVerificationTest, SameSeedSameBits) {
-  const LoopVerification a = verifyLoop(camera, *place, kTurn + 1, 1, {}, 3),
-                         b = verifyLoop(camera, *place, kTurn + 1, 1, {}, 3);
+  const LoopVerification a = verifyLoop(camera, {}, *place, kTurn + 1, 1, {}, 3),
+                         b = verifyLoop(camera, {}, *place, kTurn + 1, 1, {}, 3);
   EXPECT_EQ(a.reason, b.reason);
   EXPECT_EQ(a.current_S_candidate.scale, b.current_S_candidate.scale);
   EXPECT_EQ(a.current_S_candidate.translation, b.current_S_candidate.translation);

@@ -24,7 +24,7 @@ SeenFrame frameOf(const cv::Mat& grey) {
 }
 
 Relocalisation knowing(const Map& map, const RelocalisationOptions& options = {}) {
-  Relocalisation relocalisation(placeCamera(), options);
+  Relocalisation relocalisation(placeCamera(), {}, options);
   for (const Keyframe& keyframe : map.keyframes) relocalisation.addKeyframe(keyframe);
   return relocalisation;
 }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "edges/image_noise.h"
 #include "unit/edges/synthetic_image.h"
 
 namespace edgeslam {
@@ -18,11 +17,11 @@ Track trackAt(float x, float y, const Eigen::Vector2f& normal) {
 }
 
 TEST(MeasurementAccuracy, AnEdgePointIsKnownAcrossAndNotAlong) {
-  const PointChoiceOptions options;
+  const PointAccuracyOptions options;
   for (const double degrees : {0.0, 30.0, 100.0, 200.0}) {
     const Line line = lineThrough(60, 50, degrees);
     Track track = trackAt(60, 50, line.normal.cast<float>() + Eigen::Vector2f(0.2f, -0.1f));
-    updateAccuracy(renderLine(size, line), options, track);
+    updateAccuracy(renderLine(size, line), {options}, track);
     EXPECT_GT(track.normal.dot(line.normal.cast<float>()), 0.999f) << degrees;
     EXPECT_FALSE(track.corner);
     EXPECT_EQ(track.sigma_normal, static_cast<float>(options.sigma_edge));
@@ -36,38 +35,38 @@ TEST(MeasurementAccuracy, TheNormalKeepsItsSide) {
   const cv::Mat image = renderLine(size, line);
   for (const float side : {1.0f, -1.0f}) {
     Track track = trackAt(60, 50, side * line.normal.cast<float>());
-    updateAccuracy(image, PointChoiceOptions(), track);
+    updateAccuracy(image, {}, track);
     EXPECT_GT(side * track.normal.dot(line.normal.cast<float>()), 0.999f);
   }
 }
 
 TEST(MeasurementAccuracy, ACornerIsKnownInBothDirections) {
-  const PointChoiceOptions options;
+  const PointAccuracyOptions options;
   Track track = trackAt(59.5f, 39.5f, {1, 0});  // where four squares of 20 px meet
-  updateAccuracy(renderCheckerboard(size, 20), options, track);
+  updateAccuracy(renderCheckerboard(size, 20), {options}, track);
   EXPECT_TRUE(track.corner);
   EXPECT_EQ(track.sigma_normal, static_cast<float>(options.sigma_corner));
   EXPECT_LT(track.sigma_tangent, 2 * track.sigma_normal);
 }
 
 TEST(MeasurementAccuracy, ATrackThatBecomesACornerAndLeavesItAgainIsRenewed) {
-  const PointChoiceOptions options;
+  const PointAccuracyOptions options;
   const cv::Mat image = renderCheckerboard(size, 30);
   Track track = trackAt(59.5f, 59.5f, {1, 0});
-  updateAccuracy(image, options, track);
+  updateAccuracy(image, {options}, track);
   EXPECT_TRUE(track.corner);
   track.pixel = {59.5f, 44.5f};  // half way to the next
-  updateAccuracy(image, options, track);
+  updateAccuracy(image, {options}, track);
   EXPECT_FALSE(track.corner);
   EXPECT_EQ(track.sigma_normal, static_cast<float>(options.sigma_edge));
   EXPECT_NEAR(std::abs(track.normal.x()), 1, 1e-3);
 }
 
 TEST(MeasurementAccuracy, NoiseTellsNothingOfThePlaceAlongAnEdge) {
-  const PointChoiceOptions options;
+  const PointAccuracyOptions options;
   const cv::Mat noisy = withNoise(renderLine(size, lineThrough(60, 50, 20)), 2.0, 5);
   Track track = trackAt(60, 50, {1, 0.3f});
-  updateAccuracy(noisy, options, track);
+  updateAccuracy(noisy, {options}, track);
   EXPECT_FALSE(track.corner);
   EXPECT_GT(track.sigma_tangent, 10 * track.sigma_normal);
 }
@@ -75,16 +74,16 @@ TEST(MeasurementAccuracy, NoiseTellsNothingOfThePlaceAlongAnEdge) {
 TEST(MeasurementAccuracy, NorDoesMuchNoiseInDimLight) {
   const cv::Mat dim = withNoise(renderLine(size, lineThrough(60, 50, 20), 60, 95), 5.0, 5);
   Track track = trackAt(60, 50, {1, 0.3f});
-  updateAccuracy(dim, PointChoiceOptions(), track);
+  updateAccuracy(dim, {}, track);
   EXPECT_TRUE(track.corner) << "without the image's noise";
-  updateAccuracy(dim, withNoiseOf(dim, PointChoiceOptions()), track);
+  updateAccuracy(dim, accuracyIn(dim, {}), track);
   EXPECT_FALSE(track.corner);
   EXPECT_GT(track.sigma_tangent, 5 * track.sigma_normal);
 }
 
 TEST(MeasurementAccuracy, SigmasStayFiniteOnAFlatImage) {
   Track track = trackAt(60, 50, {1, 0});
-  updateAccuracy(cv::Mat(size, CV_8U, cv::Scalar(90)), PointChoiceOptions(), track);
+  updateAccuracy(cv::Mat(size, CV_8U, cv::Scalar(90)), {}, track);
   EXPECT_FALSE(track.corner);
   EXPECT_GT(track.sigma_normal, 0);
   EXPECT_TRUE(std::isfinite(track.sigma_tangent));

@@ -17,13 +17,20 @@ constexpr std::int64_t interval_ns = walking_interval_ns;
 Pose path(int i) { return walk(i); }
 cv::Mat black() { return cv::Mat(camera.height, camera.width, CV_8U, cv::Scalar(0)); }
 
-TrackingOutcome track(Tracker& tracker, std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
-  TrackingOutcome outcome;
-  tracker.track(index, time_ns, grey, /*mapping_busy=*/false, outcome);
+// What a frame came to, and what mapping is told of it.
+struct Outcome : FrameResult {
+  bool tells_mapping = false;
+  TrackedFrame for_mapping;
+};
+
+Outcome track(Tracker& tracker, std::int64_t index, std::int64_t time_ns, const cv::Mat& grey,
+              bool mapping_busy = false) {
+  Outcome outcome;
+  outcome.tells_mapping = tracker.track(index, time_ns, grey, mapping_busy, outcome, outcome.for_mapping);
   return outcome;
 }
 
-TrackingOutcome trackFrame(Tracker& tracker, int i) { return track(tracker, i, i * interval_ns, imageAt(i)); }
+Outcome trackFrame(Tracker& tracker, int i) { return track(tracker, i, i * interval_ns, imageAt(i)); }
 
 TrackedFrame keepLostFrame(Tracker& tracker) {
   TrackedFrame kept;
@@ -35,9 +42,9 @@ void adopt(Tracker& tracker, MapView view) { tracker.adopt(view); }
 
 // A tracker that knows the plane and has followed it up to frame `last`.
 struct Tracked {
-  Tracker tracker{camera, TrackerOptions()};
+  Tracker tracker{camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions()};
   MapView view;
-  TrackingOutcome outcome;  // of frame `last`
+  Outcome outcome;  // of frame `last`
 
   explicit Tracked(int last) {
     outcome = trackFrame(tracker, 0);
@@ -65,11 +72,12 @@ double distance(const Pose& a, const Pose& b) { return (a.translation - b.transl
 double angle(const Pose& a, const Pose& b) { return rotationAngle(a.rotation, b.rotation); }
 
 TEST(Tracker, TheFirstFrameStartsAMap) {
-  Tracker tracker(camera, TrackerOptions());
-  const TrackingOutcome outcome = trackFrame(tracker, 0);
-  EXPECT_EQ(outcome.state, FrameState::initialising);
+  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
+  const Outcome outcome = trackFrame(tracker, 0);
+  EXPECT_EQ(outcome.state, TrackingState::initialising);
   EXPECT_NE(outcome.reason, "");
-  EXPECT_EQ(outcome.reference, 0);
+  EXPECT_EQ(outcome.reference, -1) << "mapping gives the frames of a start their poses";
+  EXPECT_EQ(outcome.for_mapping.kind, FrameKind::first);
   ASSERT_TRUE(outcome.tells_mapping);
   const TrackedFrame& first = outcome.for_mapping;
   EXPECT_EQ(first.keyframe, 0);
@@ -80,8 +88,8 @@ TEST(Tracker, TheFirstFrameStartsAMap) {
     EXPECT_LT(first.observations[i - 1].point, first.observations[i].point);
   }
   // Until there is a map every frame helps to start it, and none says that it is tracked.
-  const TrackingOutcome second = trackFrame(tracker, 1);
-  EXPECT_EQ(second.state, FrameState::initialising);
+  const Outcome second = trackFrame(tracker, 1);
+  EXPECT_EQ(second.state, TrackingState::initialising);
   EXPECT_NE(second.reason, "");
   ASSERT_TRUE(second.tells_mapping);
   EXPECT_EQ(second.for_mapping.keyframe, -1);
@@ -90,35 +98,34 @@ TEST(Tracker, TheFirstFrameStartsAMap) {
 
 TEST(Tracker, WhileMappingIsBusyItIsToldNothingAndTrackingGoesOn) {
   Tracked run(3);
-  TrackingOutcome outcome;
   for (int i = 4; i < 40; ++i) {
-    run.tracker.track(i, i * interval_ns, imageAt(i), /*mapping_busy=*/true, outcome);
-    ASSERT_EQ(outcome.state, FrameState::tracking) << i << ": " << outcome.reason;
+    const Outcome outcome = track(run.tracker, i, i * interval_ns, imageAt(i), /*mapping_busy=*/true);
+    ASSERT_EQ(outcome.state, TrackingState::tracking) << i << ": " << outcome.reason;
     ASSERT_FALSE(outcome.tells_mapping) << i;
   }
   EXPECT_TRUE(trackFrame(run.tracker, 40).tells_mapping) << "the keyframe that was due long ago";
 
-  Tracker unstarted(camera, TrackerOptions());
-  unstarted.track(0, 0, imageAt(0), /*mapping_busy=*/true, outcome);
+  Tracker unstarted(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
+  const Outcome outcome = track(unstarted, 0, 0, imageAt(0), /*mapping_busy=*/true);
   EXPECT_FALSE(outcome.tells_mapping);
   EXPECT_EQ(outcome.reason, "mapping is behind");
   EXPECT_TRUE(trackFrame(unstarted, 1).tells_mapping);
 }
 
 TEST(Tracker, NothingToSeeStartsNoMap) {
-  Tracker tracker(camera, TrackerOptions());
-  const TrackingOutcome outcome = track(tracker, 0, 0, black());
-  EXPECT_EQ(outcome.state, FrameState::initialising);
+  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
+  const Outcome outcome = track(tracker, 0, 0, black());
+  EXPECT_EQ(outcome.state, TrackingState::initialising);
   EXPECT_NE(outcome.reason.find("too few points"), std::string::npos) << outcome.reason;
   EXPECT_FALSE(outcome.tells_mapping);
   EXPECT_TRUE(trackFrame(tracker, 1).tells_mapping);
 }
 
 TEST(Tracker, AnotherSceneBeforeTheMapStandsStartsAnew) {
-  Tracker tracker(camera, TrackerOptions());
+  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
   const MapView former = knownMap(trackFrame(tracker, 0).for_mapping);
-  const TrackingOutcome outcome = track(tracker, 5, 5 * interval_ns, elsewhere());
-  EXPECT_EQ(outcome.state, FrameState::initialising);
+  const Outcome outcome = track(tracker, 5, 5 * interval_ns, elsewhere());
+  EXPECT_EQ(outcome.state, TrackingState::initialising);
   ASSERT_TRUE(outcome.tells_mapping) << outcome.reason;
   EXPECT_EQ(outcome.for_mapping.keyframe, 0);
   EXPECT_EQ(outcome.for_mapping.frame_index, 5);
@@ -130,8 +137,8 @@ TEST(Tracker, AnotherSceneBeforeTheMapStandsStartsAnew) {
 TEST(Tracker, PosesInAKnownMapAreTheTrueOnes) {
   Tracked run(0);
   for (int i = 1; i <= 6; ++i) {
-    const TrackingOutcome outcome = trackFrame(run.tracker, i);
-    ASSERT_EQ(outcome.state, FrameState::tracking) << i << ": " << outcome.reason;
+    const Outcome outcome = trackFrame(run.tracker, i);
+    ASSERT_EQ(outcome.state, TrackingState::tracking) << i << ": " << outcome.reason;
     EXPECT_EQ(outcome.reason, "");
     EXPECT_LT(distance(outcome.world_T_camera, path(i)), 0.001) << i;
     EXPECT_LT(angle(outcome.world_T_camera, path(i)), 0.0005) << i;
@@ -164,8 +171,8 @@ TEST(Tracker, AnOlderOrForeignViewIsIgnored) {
   foreign.origin_frame = 1;
   adopt(run.tracker, foreign);
   EXPECT_EQ(run.tracker.view().version, run.view.version);
-  const TrackingOutcome is = trackFrame(run.tracker, 3), should_be = trackFrame(undisturbed.tracker, 3);
-  EXPECT_EQ(is.state, FrameState::tracking);
+  const Outcome is = trackFrame(run.tracker, 3), should_be = trackFrame(undisturbed.tracker, 3);
+  EXPECT_EQ(is.state, TrackingState::tracking);
   EXPECT_EQ(is.world_T_camera.translation, should_be.world_T_camera.translation);
   EXPECT_EQ(is.world_T_camera.rotation.coeffs(), should_be.world_T_camera.rotation.coeffs());
 }
@@ -184,9 +191,9 @@ TEST_P(TrackerMovedWith, ANewerViewMovesThePosesWithTheWorld) {
   // Keyframes that mapping has not seen yet have moved along.
   EXPECT_EQ(elsewhere.tracker.view().keyframes.size(), run.tracker.view().keyframes.size());
   for (int i = 4; i <= 6; ++i) {
-    const TrackingOutcome is = trackFrame(elsewhere.tracker, i), was = trackFrame(run.tracker, i);
-    ASSERT_EQ(is.state, FrameState::tracking) << is.reason;
-    ASSERT_EQ(was.state, FrameState::tracking) << was.reason;
+    const Outcome is = trackFrame(elsewhere.tracker, i), was = trackFrame(run.tracker, i);
+    ASSERT_EQ(is.state, TrackingState::tracking) << is.reason;
+    ASSERT_EQ(was.state, TrackingState::tracking) << was.reason;
     Pose should_be = was.world_T_camera;
     should_be.translation *= scale;
     should_be = new_T_old * should_be;
@@ -198,23 +205,23 @@ TEST_P(TrackerMovedWith, ANewerViewMovesThePosesWithTheWorld) {
 
 TEST(Tracker, ABlackFrameIsPredictedAndTrackingGoesOnAfterIt) {
   Tracked run(4);
-  const TrackingOutcome dark = track(run.tracker, 5, 5 * interval_ns, black());
-  EXPECT_EQ(dark.state, FrameState::predicted);
+  const Outcome dark = track(run.tracker, 5, 5 * interval_ns, black());
+  EXPECT_EQ(dark.state, TrackingState::predicted);
   EXPECT_NE(dark.reason, "");
   EXPECT_FALSE(dark.tells_mapping);
   EXPECT_EQ(dark.mapped_points, 0);
   EXPECT_LT(distance(dark.world_T_camera, path(5)), 0.01) << "goes on as it moved";
   EXPECT_GT(dark.covariance(0, 0), run.outcome.covariance(0, 0));
-  const TrackingOutcome next = trackFrame(run.tracker, 6);
-  EXPECT_EQ(next.state, FrameState::tracking) << next.reason;
+  const Outcome next = trackFrame(run.tracker, 6);
+  EXPECT_EQ(next.state, TrackingState::tracking) << next.reason;
   EXPECT_LT(distance(next.world_T_camera, path(6)), 0.001);
 }
 
 TEST(Tracker, BlackForLongIsNeverTaken) {
   Tracked run(2);
   for (int i = 3; i < 40; ++i) {  // longer than the blur gate rejects frames in a row
-    const TrackingOutcome outcome = track(run.tracker, i, i * interval_ns, black());
-    ASSERT_TRUE(outcome.state == FrameState::predicted || outcome.state == FrameState::lost) << i;
+    const Outcome outcome = track(run.tracker, i, i * interval_ns, black());
+    ASSERT_TRUE(outcome.state == TrackingState::predicted || outcome.state == TrackingState::lost) << i;
     ASSERT_FALSE(outcome.tells_mapping) << i;
   }
 }
@@ -224,9 +231,9 @@ TEST(Tracker, ThePredictedPosesDoubtGrowsWithTheTimeSince) {
   Matrix6d before = run.outcome.covariance;
   double farthest = 0;
   for (const int later : {1, 2, 3, 10, 100}) {
-    TrackingOutcome outcome;
-    run.tracker.skip((4 + later) * interval_ns, "unreadable", outcome);
-    EXPECT_EQ(outcome.state, FrameState::predicted);
+    FrameResult outcome;
+    run.tracker.skip(4 + later, (4 + later) * interval_ns, "unreadable", outcome);
+    EXPECT_EQ(outcome.state, TrackingState::predicted);
     EXPECT_EQ(outcome.reason, "unreadable");
     EXPECT_GT((outcome.covariance - before).diagonal().minCoeff(), 0) << later;
     before = outcome.covariance;
@@ -238,8 +245,8 @@ TEST(Tracker, ThePredictedPosesDoubtGrowsWithTheTimeSince) {
 
 TEST(Tracker, AnotherPlaceIsLostAndGivesNoKeyframeOfIt) {
   Tracked run(3);
-  const TrackingOutcome outcome = track(run.tracker, 4, 4 * interval_ns, elsewhere());
-  EXPECT_EQ(outcome.state, FrameState::lost);
+  const Outcome outcome = track(run.tracker, 4, 4 * interval_ns, elsewhere());
+  EXPECT_EQ(outcome.state, TrackingState::lost);
   EXPECT_NE(outcome.reason, "");
   EXPECT_GT(outcome.covariance(0, 0), run.outcome.covariance(0, 0));
   EXPECT_FALSE(outcome.tells_mapping && outcome.for_mapping.frame_index == 4);
@@ -249,10 +256,10 @@ TEST(Tracker, AnotherPlaceIsLostAndGivesNoKeyframeOfIt) {
   EXPECT_GT(kept.keyframe, run.tracker.view().keyframes.back().id);
   ASSERT_TRUE(kept.images);
   EXPECT_EQ(kept.images->frame_index, 4);
-  ASSERT_EQ(track(run.tracker, 5, 5 * interval_ns, elsewhere()).state, FrameState::lost);
+  ASSERT_EQ(track(run.tracker, 5, 5 * interval_ns, elsewhere()).state, TrackingState::lost);
   EXPECT_EQ(keepLostFrame(run.tracker).keyframe, kept.keyframe + 1) << "no number twice";
-  const TrackingOutcome back = trackFrame(run.tracker, 6);
-  EXPECT_EQ(back.state, FrameState::tracking) << back.reason;
+  const Outcome back = trackFrame(run.tracker, 6);
+  EXPECT_EQ(back.state, TrackingState::tracking) << back.reason;
   EXPECT_FALSE(run.tracker.hasLostFrame());
 }
 
@@ -260,9 +267,9 @@ TEST(Tracker, AnotherPlaceIsLostAndGivesNoKeyframeOfIt) {
 TEST(Tracker, AnUncertainPoseIsNotBelieved) {
   const auto state = [](double largest_deviation) {
     TrackerOptions options;
-    options.least_points_share = 0;
-    options.largest_deviation = largest_deviation;
-    Tracker tracker(camera, options);
+    options.location.acceptance.least_points_share = 0;
+    options.location.acceptance.largest_deviation = largest_deviation;
+    Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), options);
     MapView view = knownMap(trackFrame(tracker, 0).for_mapping);
     const auto is_far_off = [](const ViewPoint& point) {
       return (point.source_measurement.pixel - Eigen::Vector2d(camera.width / 2.0, camera.height / 2.0)).norm() > 30;
@@ -272,8 +279,8 @@ TEST(Tracker, AnUncertainPoseIsNotBelieved) {
     adopt(tracker, view);
     return trackFrame(tracker, 1).state;
   };
-  EXPECT_EQ(state(std::numeric_limits<double>::infinity()), FrameState::tracking);
-  EXPECT_EQ(state(1e-3), FrameState::lost);
+  EXPECT_EQ(state(std::numeric_limits<double>::infinity()), TrackingState::tracking);
+  EXPECT_EQ(state(1e-3), TrackingState::lost);
 }
 
 // The map points as they are measured in the frame at `pose`.
@@ -291,11 +298,11 @@ std::vector<FoundAgain> foundIn(const MapView& view, const Pose& pose, const Pos
 
 TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
   Tracked run(2);
-  ASSERT_EQ(track(run.tracker, 3, 3 * interval_ns, elsewhere()).state, FrameState::lost);
+  ASSERT_EQ(track(run.tracker, 3, 3 * interval_ns, elsewhere()).state, TrackingState::lost);
   // So long after, the last frame's points are not looked for any more.
   const std::int64_t later_ns = 3'000'000'000;
-  const TrackingOutcome lost = track(run.tracker, 90, later_ns, imageAt(8));
-  ASSERT_EQ(lost.state, FrameState::lost);
+  const Outcome lost = track(run.tracker, 90, later_ns, imageAt(8));
+  ASSERT_EQ(lost.state, TrackingState::lost);
   ASSERT_TRUE(run.tracker.hasLostFrame());
   const TrackedFrame kept = keepLostFrame(run.tracker);
   EXPECT_EQ(kept.frame_index, 90);
@@ -303,7 +310,7 @@ TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
   EXPECT_EQ(kept.images->frame_index, 90);
   EXPECT_FALSE(run.tracker.keptEdges()->points.empty());
   // Others look for it for a while.
-  EXPECT_EQ(track(run.tracker, 91, later_ns + interval_ns / 2, elsewhere()).state, FrameState::lost);
+  EXPECT_EQ(track(run.tracker, 91, later_ns + interval_ns / 2, elsewhere()).state, TrackingState::lost);
 
   const Pose new_T_old{rotationExp({0.1, 0.9, -0.2}), {-4, 2, 1}};
   MapView view = moved(run.view, new_T_old);
@@ -314,8 +321,8 @@ TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
   EXPECT_EQ(run.tracker.tracks().size(), found.size());
   EXPECT_EQ(run.tracker.view().version, version);
   for (int i = 9; i <= 11; ++i) {
-    const TrackingOutcome outcome = track(run.tracker, 83 + i, later_ns + (i - 8) * interval_ns, imageAt(i));
-    ASSERT_EQ(outcome.state, FrameState::tracking) << outcome.reason;
+    const Outcome outcome = track(run.tracker, 83 + i, later_ns + (i - 8) * interval_ns, imageAt(i));
+    ASSERT_EQ(outcome.state, TrackingState::tracking) << outcome.reason;
     EXPECT_FALSE(run.tracker.hasLostFrame());
     EXPECT_LT(distance(outcome.world_T_camera, new_T_old * path(i)), 0.001) << i;
     EXPECT_LT(angle(outcome.world_T_camera, new_T_old * path(i)), 0.0005) << i;
