@@ -32,7 +32,7 @@ class ViewStream {
  public:
   virtual ~ViewStream() = default;
   virtual void offer(ViewMessage kind, const SharedMessage& message) = 0;
-  // Likewise the map, of which it takes what it does not have yet.
+  // Gives the map to those who look on; they take what they do not have yet.
   virtual void offer(const SharedMap& map) = 0;
   // False while the latest picture still waits to be sent: it takes none now.
   virtual bool wantsPicture() const = 0;

@@ -25,7 +25,7 @@ class EDGESLAM_PUBLIC LiveSlam {
   // Called for each frame that was processed, in order, by one thread of the library's. Must not throw, nor call this
   // object; what takes long delays later frames' calls, not their tracking.
   using PoseReceiver = std::function<void(const PosedFrame&)>;
-  // Likewise, a line for each recovery, relocalisation and loop.
+  // Called by the same thread, with a line for each recovery, relocalisation and loop.
   using EventReceiver = std::function<void(const std::string&)>;
 
   // A configuration as the program's, with a camera's calibration in it; its sections capture, lcm, map, recording and
@@ -50,7 +50,7 @@ class EDGESLAM_PUBLIC LiveSlam {
   void stop();
   // After stop().
   std::vector<MapEdgePoint> map() const;
-  // Likewise. Whole or not at all. Throws InputError where it cannot be written, or there is no map.
+  // After stop(). Whole or not at all. Throws InputError where it cannot be written, or there is no map.
   void saveMap(const std::string& map_file) const;
 
  private:

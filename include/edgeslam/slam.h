@@ -30,7 +30,7 @@ class EDGESLAM_PUBLIC Slam {
   int width() const;  // of the frames [px]
   int height() const;
 
-  // Before the first frame: goes on with a map that was saved with the same calibration. Throws InputError.
+  // Before the first frame: continues a map that was saved with the same calibration. Throws InputError.
   void goOnWith(const std::string& map_file);
 
   // The next frame. Throws InputError where its size is not the calibration's or its time stamp not after the last

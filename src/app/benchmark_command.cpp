@@ -210,9 +210,9 @@ int runBenchmarkCommand(const BenchmarkArguments& arguments) {
 
 void addBenchmarkCommand(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<BenchmarkArguments>();
-  CLI::App* command = app.add_subcommand(
-      "benchmark",
-      "Run over all sequences under a folder, several at once, into one page; goes on where it was stopped");
+  CLI::App* command = app.add_subcommand("benchmark",
+                                         "Run over all sequences under a folder, several at once, and make one page of "
+                                         "them; continues where it was stopped");
   command
       ->add_option(
           "DIR", arguments->folder,
@@ -225,8 +225,8 @@ void addBenchmarkCommand(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1024));
   command->add_option("--config", arguments->configuration,
                       "Configuration file (YAML) of all runs; without it the defaults");
-  command->add_option("--only", arguments->only, "Names of the sequences to run, parted by commas")->delimiter(',');
-  command->add_flag("--again", arguments->again, "Run also what is finished already");
+  command->add_option("--only", arguments->only, "Names of the sequences to run, separated by commas")->delimiter(',');
+  command->add_flag("--again", arguments->again, "Also repeat the runs that are finished");
   command->callback([arguments, &exit_code] { exit_code = runBenchmarkCommand(*arguments); });
 }
 

@@ -145,7 +145,7 @@ void addBoardCommand(CLI::App& calibrate_command, int& exit_code) {
   command
       ->add_option("--columns", options->columns, "Inner corners (chessboard), squares (charuco) or tags (aprilgrid)")
       ->required();
-  command->add_option("--rows", options->rows, "Likewise")->required();
+  command->add_option("--rows", options->rows, "Inner corners, squares or tags from top to bottom")->required();
   command->add_option("--square", options->square, "Side of a square, or of a tag, with its unit: 30mm")->required();
   command->add_option("--marker", options->marker, "charuco: side of the markers; 0.75 of the square by default");
   command->add_option("--markers", options->markers, "charuco: cells of the ArUco markers, 4x4, 5x5, 6x6 or 7x7")

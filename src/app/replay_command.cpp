@@ -215,15 +215,16 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   command->add_option("--output", arguments->output, "Folder for the results")->capture_default_str();
   command
       ->add_option("--map-in", arguments->map_in,
-                   "Saved map of the same camera: its frames are looked for in it, and it is gone on with")
+                   "Saved map of the same camera: frames are found in it, and it is extended")
       ->check(named);
   command->add_option("--map-out", arguments->map_out, "File to save the map to at the end")->check(named);
-  command->add_flag("--realtime", arguments->realtime,
-                    "At the pace of the time stamps, as on the robot: what the computer does not manage is dropped");
+  command->add_flag(
+      "--realtime", arguments->realtime,
+      "Run at the pace of the time stamps, as on the robot; frames that the computer is too slow for are dropped");
   command->add_flag("--lcm", arguments->lcm, "With --realtime: publish over LCM, as `edgeslam run` does");
   command
       ->add_option("--pace", arguments->pace,
-                   "With --realtime: so many times as fast, 2 makes of a recording at 30 frames/s one at 60")
+                   "With --realtime: how many times as fast; 2 plays a recording of 30 frames/s at 60")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 20.0));
   command->add_option("--record", arguments->record, "With --realtime: folder for a recording that repeats this run")

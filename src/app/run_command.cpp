@@ -27,7 +27,7 @@ Camera cameraOf(const RunArguments& arguments, const Configuration& configuratio
                    "no calibration of the camera; give one (camera.calibration)");
 }
 
-// A map that cannot be gone on with is no reason not to start: it is set aside, so that it is not written over.
+// A map that cannot be continued is no reason not to start: it is set aside, so that it is not written over.
 std::optional<Map> configuredMap(const std::string& path, const Camera& camera, EventLog& log) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   try {
@@ -87,7 +87,7 @@ void addRunCommand(CLI::App& app, int& exit_code) {
       ->check(named);
   command->add_option("--record", arguments->record, "Folder for a recording of this run, from the start")
       ->check(named);
-  command->add_option("--map-in", arguments->map_in, "Saved map of the same camera, to go on with")->check(named);
+  command->add_option("--map-in", arguments->map_in, "Saved map of the same camera, which is extended")->check(named);
   command->add_option("--map-out", arguments->map_out, "File for the map (default: map.file of the configuration)")
       ->check(named);
   command->callback([arguments, &exit_code] { exit_code = runService(*arguments); });

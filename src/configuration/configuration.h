@@ -41,7 +41,7 @@ struct Configuration {
 // first problem.
 Configuration readConfiguration(const std::string& path);
 
-// Likewise, but collects all problems, one line each in the order of the file, and throws nothing: where there are any,
+// The same, but collects all problems, one line each in the order of the file, and throws nothing: where there are any,
 // the configuration is not to be used.
 Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems);
 

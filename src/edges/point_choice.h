@@ -72,7 +72,7 @@ std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,
                                       const std::vector<Eigen::Vector2f>& occupied, const PointSpread& spread,
                                       const PointAccuracy& accuracy);
 
-// Likewise, of an image that has the usual noise.
+// In memory of its own, for an image that has the usual noise.
 std::vector<ChosenPoint> choosePoints(const cv::Mat& grey, const EdgeMap& edges,
                                       const std::vector<Eigen::Vector2f>& occupied, const PointChoiceOptions& options);
 

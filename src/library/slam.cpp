@@ -45,7 +45,7 @@ int Slam::width() const { return work_->camera.width; }
 int Slam::height() const { return work_->camera.height; }
 
 void Slam::goOnWith(const std::string& map_file) {
-  if (work_->frames > 0) throw InputError(map_file + ": a saved map is gone on with before the first frame only");
+  if (work_->frames > 0) throw InputError(map_file + ": a saved map can be continued before the first frame only");
   work_->run.goOnWith(loadMap(map_file, work_->camera));
 }
 

@@ -35,7 +35,7 @@ class Mapper {
   Mapper(const Camera& camera, const MapperOptions& options)
       : camera_(camera), options_(options), initialisation_(camera, options.initialisation) {}
 
-  // Before the first frame: goes on with a map made earlier, of the same camera.
+  // Before the first frame: continues a map made earlier, of the same camera.
   void goOnWith(Map map);
 
   // Takes over a frame. True where the map, or what it waits for, changed.

@@ -39,7 +39,7 @@ class LiveRun {
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
-  // Before the start: goes on with a map made earlier.
+  // Before the start: continues a map made earlier.
   void goOnWith(Map map);
   // Before the start: frames that are asked for are shown there. `looks` must outlive the run.
   void showTo(FrameLooks& looks) { tracking_.showTo(looks); }

@@ -20,7 +20,7 @@ class LockstepRun {
 
   // Before the first frame: repeats a live run, whose frames are given as it processed them.
   void repeat(RunDecisions decisions) { recorded_ = std::move(decisions); }
-  // Before the first frame: goes on with a map made earlier, of the same camera. The camera is somewhere in it.
+  // Before the first frame: continues a map made earlier, of the same camera. The camera is somewhere in it.
   void goOnWith(Map map);
   // The map as it is now; without keyframes where none stands yet.
   const Map& map() const { return mapping_.mapper().map(); }

@@ -20,7 +20,7 @@ class MappingWorker {
         mapper_(camera, settings.mapping),
         relocalisation_(camera, settings.points.accuracy, settings.relocalisation) {}
 
-  // Before the first message: goes on with a map made earlier, of the same camera.
+  // Before the first message: continues a map made earlier, of the same camera.
   void goOnWith(Map map);
 
   // The next message of tracking. No update: nothing changed that tracking is to know.

@@ -20,7 +20,7 @@ Correction PlacesWorker::work(const Snapshot& snapshot) {
   const Map& before = *snapshot.map;
   if (before.keyframes.front().frame_index != origin_frame_) {
     origin_frame_ = before.keyframes.front().frame_index;
-    // Where a saved map is gone on with, the camera is in its old parts from the start.
+    // Where a saved map is continued, the camera is in its old parts from the start.
     last_met_ = last_shared_out_ = last_global_ = before.keyframes.back().id;
     last_global_ns_ = before.keyframes.back().time_ns;
   }

@@ -1,4 +1,4 @@
-// Name, priority and processors of the calling thread. What is not allowed is told, and the run goes on without.
+// Name, priority and processors of the calling thread. What is not allowed is told and left out.
 #pragma once
 
 #include <optional>

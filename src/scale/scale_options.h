@@ -23,7 +23,7 @@ struct ScaleOptions {
   // "none": on command only; "camera_height", "odometry"
   std::string source = "none";
   double largest_sigma = 0.1;  // a scale that is known worse than this share is refused
-  // Of the map that is gone on with at the start; 0: not known.
+  // Of the map that is continued at the start; 0: not known.
   double metres_per_unit = 0;
   double sigma = 0.05;  // standard deviation of that scale over the scale
   CameraHeightOptions height;

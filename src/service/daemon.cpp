@@ -106,7 +106,7 @@ Daemon::RunEnd Daemon::capture(LiveRun& run) {
   return {};
 }
 
-// A recording repeats a run only from its start: the run to come goes on with the map of the one before, which is kept
+// A recording repeats a run only from its start: the run to come continues the map of the one before, which is kept
 // with the recording.
 void Daemon::beginNext(const Command& command, LiveRun& run) {
   if (command.kind == CommandKind::reset) {

@@ -53,7 +53,7 @@ class Daemon {
   std::unique_ptr<FrameIntake> intake_;
 
   RunStart start_ = RunStart::new_map;
-  std::optional<Map> map_;  // that the run to come goes on with
+  std::optional<Map> map_;  // that the run to come continues
   bool ended_ = false;
   bool processors_told_ = false;
 

@@ -18,7 +18,7 @@ struct DaemonSetup {
   Camera camera;
   CameraOptions capture;      // the configuration's, or a recording as a stand-in
   std::string record_folder;  // of a recording from the start; empty: none
-  std::optional<Map> map_in;  // gone on with
+  std::optional<Map> map_in;  // to be continued
   std::string map_out;        // empty: not written
   bool for_viewing = false;   // begins when someone looks on, and goes on after the end until a signal
 };

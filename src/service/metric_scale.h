@@ -27,7 +27,7 @@ class MetricScale {
 
   // Another map was begun: the scale was that of a map that is no more.
   void forget();
-  // A saved map was gone on with: what the configuration says of its scale.
+  // A saved map is continued: what the configuration says of its scale.
   void takeConfigured();
   // By a loop: positions before and after do not go together.
   void mapWasCorrected();

@@ -1,4 +1,4 @@
-// A map saved by one run is gone on with by another. The sequences are made by ctest (see CMakeLists.txt): `hall` and
+// A map saved by one run is continued by another. The sequences are made by ctest (see CMakeLists.txt): `hall` and
 // `parlour` have posters or furniture; `parlour_again` is the same room on another day, by another hand.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // The daemon on a camera that goes away, freezes, breaks its frames, repeats or reorders them, and is well again: it
-// says what is wrong, poses are never told twice or backwards, and the same map is gone on with.
+// says what is wrong, poses are never told twice or backwards, and the same map is continued.
 #include <gtest/gtest.h>
 
 #include "frames/frame_source.h"
