@@ -14,8 +14,9 @@ OpenedCamera openCamera(const CameraOptions& options);
 // The same, as a camera that comes back after an interruption. Throws InputError where it cannot be opened now.
 std::unique_ptr<ReopeningCamera> openLastingCamera(const CameraOptions& options);
 
-// As openLastingCamera(), but a camera that is not there yet, or is in use, is waited for: `problem` then says what is the matter. `size`:
-// that its frames must have [px]. Throws InputError where waiting cannot help, or frames have another size.
+// As openLastingCamera(), but a camera that is not there yet, or is in use, is waited for: `problem` then says what is
+// the matter. `size`: that its frames must have [px]. Throws InputError where waiting cannot help, or frames have
+// another size.
 std::unique_ptr<ReopeningCamera> openOrAwaitCamera(const CameraOptions& options, cv::Size size, std::string& problem);
 
 }  // namespace edgeslam
