@@ -133,7 +133,7 @@ std::int64_t medianStep(const Trajectory& trajectory) {
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     steps.push_back(trajectory[i].time_ns - trajectory[i - 1].time_ns);
   }
-  return medianOr<std::int64_t>(0, std::move(steps));
+  return medianOr(std::int64_t{0}, std::move(steps));
 }
 
 }  // namespace
