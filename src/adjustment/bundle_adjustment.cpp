@@ -11,8 +11,8 @@ namespace {
 
 // Inverse depths below 0 are points beyond infinity, where the residual goes on smoothly: they are let through while
 // adjusting, and end here.
-constexpr double kLeastInverseDepth = 1e-6;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double least_inverse_depth = 1e-6;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -72,7 +72,7 @@ double robustCost(const Camera& camera, const BundleProblem& problem, double hub
 
 // Errors, depth deviations and final cost of a problem as it stands.
 void assess(const Camera& camera, const BundleProblem& problem, double huber, BundleResult& result) {
-  result.errors.assign(problem.observations.size(), kInfinity);
+  result.errors.assign(problem.observations.size(), infinity);
   std::vector<double> information(problem.points.size(), 0.0);
   double cost = 0;
   forEachResidual(
@@ -130,7 +130,8 @@ bool readBack(const BundleStructure& structure, const BundleState& state, Bundle
   for (std::size_t i = 0; i < structure.points.size(); ++i) {
     if (!structure.points[i].free) continue;
     if (!std::isfinite(state.inverse_depths[i])) return false;
-    problem.points[at(structure.points[i].index)].inverse_depth = std::max(kLeastInverseDepth, state.inverse_depths[i]);
+    problem.points[at(structure.points[i].index)].inverse_depth =
+        std::max(least_inverse_depth, state.inverse_depths[i]);
   }
   return true;
 }
@@ -142,7 +143,7 @@ BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const Bu
   BundleResult result;
   const auto finite_camera = [](const BundleCamera& c) { return finite(c.world_T_camera); };
   if (!indicesInRange(problem) || !std::all_of(problem.cameras.begin(), problem.cameras.end(), finite_camera)) {
-    result.errors.assign(problem.observations.size(), kInfinity);
+    result.errors.assign(problem.observations.size(), infinity);
     result.depth_sigmas.assign(problem.points.size(), 0);
     return result;
   }

@@ -6,12 +6,12 @@
 namespace edgeslam {
 namespace {
 
-constexpr int kMostDenseCameras = 30;
-constexpr double kFirstDamping = 1e-4;
-constexpr double kLeastDamping = 1e-9;
-constexpr double kBestFactor = 1.0 / 3;  // that the damping is multiplied by after a step as good as expected
-constexpr double kMostDamping = 1e8;
-constexpr double kConverged = 1e-6;  // of the cost; outliers inflate the cost that this is relative to
+constexpr int most_dense_cameras = 30;
+constexpr double first_damping = 1e-4;
+constexpr double least_damping = 1e-9;
+constexpr double best_factor = 1.0 / 3;  // that the damping is multiplied by after a step as good as expected
+constexpr double most_damping = 1e8;
+constexpr double converged_change = 1e-6;  // of the cost; outliers inflate the cost that this is relative to
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -63,14 +63,14 @@ bool computeStep(double damping, BundleWorkspace& workspace) {
 // the damping is multiplied by after a step, from what it gained against what was expected.
 double dampingFactor(double gain, double expected) {
   const double doubt = 2 * gain / expected - 1;
-  return std::max(kBestFactor, 1 - doubt * doubt * doubt);
+  return std::max(best_factor, 1 - doubt * doubt * doubt);
 }
 
 }  // namespace
 
 int minimizeBundle(const Camera& camera, const BundleProblem& problem, const BundleOptions& options,
                    const std::atomic<bool>* interrupted, BundleWorkspace& workspace) {
-  structureBundle(problem, kMostDenseCameras, workspace.structure);
+  structureBundle(problem, most_dense_cameras, workspace.structure);
   if (workspace.structure.points.empty()) return -1;
   workspace.solver.prepare(workspace.structure);
   readState(problem, workspace.structure, workspace.state);
@@ -80,7 +80,7 @@ int minimizeBundle(const Camera& camera, const BundleProblem& problem, const Bun
     linearizeBundle(camera, workspace.structure, state, options.huber, damping, workspace.linearization);
     return workspace.linearization.cost;
   };
-  double damping = kFirstDamping, refusal_factor = 2;
+  double damping = first_damping, refusal_factor = 2;
   double cost = linearizeAt(workspace.state, damping);
   if (!std::isfinite(cost)) return -1;
   bool ever_solved = false;
@@ -91,9 +91,9 @@ int minimizeBundle(const Camera& camera, const BundleProblem& problem, const Bun
     const bool solved = computeStep(damping, workspace);
     ever_solved |= solved;
     const double expected = solved ? expectedGain(workspace) : 0;
-    const bool last = iteration == options.iterations || (solved && expected < kConverged * cost);
+    const bool last = iteration == options.iterations || (solved && expected < converged_change * cost);
     // Most steps are good, so that the next equations are made at once, with the damping that follows a good step.
-    const double hoped_damping = std::max(kLeastDamping, kBestFactor * damping);
+    const double hoped_damping = std::max(least_damping, best_factor * damping);
     double new_cost = cost;
     if (solved) {
       moveState(workspace, workspace.candidate);
@@ -104,15 +104,15 @@ int minimizeBundle(const Camera& camera, const BundleProblem& problem, const Bun
     if (gain > 0) {
       std::swap(workspace.state, workspace.candidate);
       cost = new_cost;
-      if (last || gain < kConverged * cost) break;
+      if (last || gain < converged_change * cost) break;
       const double factor = dampingFactor(gain, expected);
-      damping = std::clamp(factor * damping, kLeastDamping, kMostDamping);
+      damping = std::clamp(factor * damping, least_damping, most_damping);
       refusal_factor = 2;
       if (factor > 1) linearizeAt(workspace.state, damping);  // else the depths' damping does not matter
     } else {
       damping *= refusal_factor;
       refusal_factor *= 2;
-      if (last || damping > kMostDamping) break;
+      if (last || damping > most_damping) break;
       linearizeAt(workspace.state, damping);
     }
   }

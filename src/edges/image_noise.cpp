@@ -9,10 +9,10 @@
 namespace edgeslam {
 namespace {
 
-constexpr int kStep = 4;  // every fourth pixel of every fourth row is enough
-constexpr double kMostNoise = 32;
-constexpr double kDeviationOfMedian = 1.4826;  // standard deviation of a Gaussian over the median of its absolute value
-constexpr double kGainOfDifferences = 6;       // standard deviation of the second differences over that of a pixel
+constexpr int sampling_step = 4;  // every fourth pixel of every fourth row is enough
+constexpr double most_noise = 32;
+constexpr double deviation_of_median = 1.4826;  // of a Gaussian: standard deviation over median absolute value
+constexpr double gain_of_differences = 6;       // standard deviation of the second differences over that of a pixel
 
 // [1 -2 1; -2 4 -2; 1 -2 1] around the pixel `at` points to: 0 on planes, and along straight level or upright edges.
 int secondDifferences(const uint8_t* at, std::ptrdiff_t row) {
@@ -41,14 +41,14 @@ double medianOf(const std::array<int, 2041>& counts) {
 double gradientNoise(const cv::Mat& grey) {
   std::array<int, 2041> counts{};  // of absolute second differences
   const auto row = static_cast<std::ptrdiff_t>(grey.step1());
-  for (int y = 1; y < grey.rows - 1; y += kStep) {
+  for (int y = 1; y < grey.rows - 1; y += sampling_step) {
     const uint8_t* pixels = grey.ptr<uint8_t>(y);
-    for (int x = 1; x < grey.cols - 1; x += kStep) {
+    for (int x = 1; x < grey.cols - 1; x += sampling_step) {
       ++counts[static_cast<size_t>(std::abs(secondDifferences(pixels + x, row)))];
     }
   }
-  const double deviation = medianOf(counts) * kDeviationOfMedian / kGainOfDifferences;
-  return std::min(0.5 * deviation * deviation, kMostNoise);
+  const double deviation = medianOf(counts) * deviation_of_median / gain_of_differences;
+  return std::min(0.5 * deviation * deviation, most_noise);
 }
 
 }  // namespace edgeslam

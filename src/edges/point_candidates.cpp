@@ -5,7 +5,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr int kNormalReach = 6;  // neighbours on each side over which a normal is averaged [points]
+constexpr int normal_reach = 6;  // neighbours on each side over which a normal is averaged [points]
 
 // Mean normal of an edge point and as many neighbours along the chain before as after it, so that a bend does not turn
 // it. A third as noisy as the point's own, and free of the skew that central differences give the tensor on sharp
@@ -14,7 +14,7 @@ Eigen::Vector2f normalAlongChain(const EdgeMap& edges, const EdgePoint& edge) {
   Eigen::Vector2f sum = edge.normal;
   int before = edge.previous;
   int after = edge.next;
-  for (int step = 0; step < kNormalReach && before >= 0 && after >= 0; ++step) {
+  for (int step = 0; step < normal_reach && before >= 0 && after >= 0; ++step) {
     const EdgePoint& behind = edges.points[static_cast<size_t>(before)];
     const EdgePoint& ahead = edges.points[static_cast<size_t>(after)];
     sum += behind.normal + ahead.normal;
@@ -52,7 +52,7 @@ void findPointCandidates(const cv::Mat& grey, const EdgeMap& edges, const PointS
   const auto border = static_cast<float>(spread.border);
   const float right = static_cast<float>(grey.cols - 1) - border;
   const float bottom = static_cast<float>(grey.rows - 1) - border;
-  for (size_t i = 0; i < edges.points.size(); i += kCandidateStep) {
+  for (size_t i = 0; i < edges.points.size(); i += candidate_step) {
     const EdgePoint& edge = edges.points[i];
     const Eigen::Vector2f& pixel = edge.pixel;
     if (pixel.x() < border || pixel.y() < border || pixel.x() > right || pixel.y() > bottom) continue;

@@ -26,7 +26,7 @@ struct PointChoiceOptions : PointSpread {
 };
 
 // Along a chain every second edge point is a candidate: tensors change little in between.
-constexpr size_t kCandidateStep = 2;
+constexpr size_t candidate_step = 2;
 
 struct PointCandidate {
   Eigen::Vector2f pixel;  // sub-pixel [px]

@@ -8,14 +8,14 @@
 namespace edgeslam {
 namespace {
 
-constexpr size_t kDirections = 4;      // of an edge that are told apart, over half a turn
-constexpr float kUnknownAlong = 1000;  // standard deviation of a point that nothing holds along its edge [px]
+constexpr size_t direction_count = 4;  // of an edge that are told apart, over half a turn
+constexpr float unknown_along = 1000;  // standard deviation of a point that nothing holds along its edge [px]
 
 // Of the line that the normal lies on: 0 is level, 1 slants from the upper left to the lower right, 2 is upright.
 size_t directionOf(const Eigen::Vector2f& normal) {
-  constexpr float kTanOfEighth = 0.41421356F;
-  if (std::abs(normal.y()) < kTanOfEighth * std::abs(normal.x())) return 0;
-  if (std::abs(normal.x()) < kTanOfEighth * std::abs(normal.y())) return 2;
+  constexpr float tan_of_half_octant = 0.41421356F;
+  if (std::abs(normal.y()) < tan_of_half_octant * std::abs(normal.x())) return 0;
+  if (std::abs(normal.x()) < tan_of_half_octant * std::abs(normal.y())) return 2;
   return (normal.x() > 0) == (normal.y() > 0) ? 1 : 3;
 }
 
@@ -28,7 +28,7 @@ ChosenPoint makePoint(const PointCandidate& candidate, const PointAccuracy& accu
   point.chain = candidate.chain;
   point.sigma_normal = static_cast<float>(point.corner ? accuracy.options.sigma_corner : accuracy.options.sigma_edge);
   const float stretch = std::sqrt(std::max(1.0F, point.tensor.l1 / informativeL2(point.tensor.l2, accuracy)));
-  point.sigma_tangent = std::min(point.sigma_normal * stretch, kUnknownAlong);
+  point.sigma_tangent = std::min(point.sigma_normal * stretch, unknown_along);
   return point;
 }
 
@@ -118,9 +118,9 @@ void sortIntoCells(const Grid& grid, const std::vector<Eigen::Vector2f>& occupie
   }
 }
 
-constexpr RankedCandidate kNone = {0, -1};
+constexpr RankedCandidate no_candidate = {0, -1};
 
-// Removes the best candidate of the list that has room, and returns it; kNone when none is left.
+// Removes the best candidate of the list that has room, and returns it; no_candidate when none is left.
 RankedCandidate takeBest(PointChoiceWorkspace& workspace, RankedCandidates& list) {
   while (list.begin < list.end) {
     const auto heap = workspace.ranked.begin();
@@ -128,7 +128,7 @@ RankedCandidate takeBest(PointChoiceWorkspace& workspace, RankedCandidates& list
     const RankedCandidate best = workspace.ranked[static_cast<size_t>(--list.end)];
     if (workspace.spacing.isFree(candidateOf(workspace, best.candidate).pixel)) return best;
   }
-  return kNone;
+  return no_candidate;
 }
 
 RankedCandidate bestCorner(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
@@ -137,7 +137,7 @@ RankedCandidate bestCorner(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
 
 // The steepest edge point of the direction of which the cell has fewest points.
 RankedCandidate bestEdge(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
-  std::array<size_t, kDirections> order = {0, 1, 2, 3};
+  std::array<size_t, direction_count> order = {0, 1, 2, 3};
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
     const int taken_a = cell.taken_of_direction[a];
     const int taken_b = cell.taken_of_direction[b];
@@ -147,7 +147,7 @@ RankedCandidate bestEdge(PointChoiceWorkspace& workspace, ChoiceCell& cell) {
     const RankedCandidate best = takeBest(workspace, cell.edges[direction]);
     if (best.candidate >= 0) return best;
   }
-  return kNone;
+  return no_candidate;
 }
 
 // Cells with the fewest points come first, so that a rich region doesn't take all: in round n each cell with n points
@@ -186,7 +186,7 @@ void takeRoundByRound(int budget, BestOfCell best_of_cell, const PointAccuracy& 
 // Memory for all that an image of this size may ask for.
 void reserve(const cv::Size& size, const EdgeMap& edges, size_t cells, const PointSpread& spread,
              PointChoiceWorkspace& workspace, std::vector<ChosenPoint>& chosen) {
-  const size_t most_candidates = std::max(mostEdgePoints(size), edges.points.size()) / kCandidateStep + 1;
+  const size_t most_candidates = std::max(mostEdgePoints(size), edges.points.size()) / candidate_step + 1;
   workspace.candidates.reserve(most_candidates);
   workspace.ranked.reserve(2 * most_candidates);
   workspace.cells.reserve(cells);

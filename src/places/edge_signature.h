@@ -22,8 +22,8 @@ struct EdgeSignaturePart {
 struct EdgeSignature {
   std::array<double, 7> moments{};  // Hu's seven, for curves: the same at any scale, place and turn of the image
   std::array<EdgeSignaturePart, signature_parts> parts;
-  cv::Mat
-      thumbnail;  // CV_32F, signature_thumbnail_height x signature_thumbnail_width, blurred, local contrast evened out
+  // CV_32F, signature_thumbnail_height x signature_thumbnail_width, blurred, local contrast evened out.
+  cv::Mat thumbnail;
 };
 
 struct SignatureOptions {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <set>
 
+#include "geometry/angles.h"
+#include "geometry/median.h"
 #include "tracking/measurement_accuracy.h"
 
 namespace edgeslam {
@@ -104,12 +106,6 @@ double largestSigma(const Eigen::Matrix3d& covariance) {
 
 std::string of(int count, int all, const char* what) {
   return std::to_string(count) + " of " + std::to_string(all) + " " + what;
-}
-
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 PoseEvidence countEvidence(const RoundResult& round) {
@@ -236,14 +232,14 @@ GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std:
   }
   PoseEvidence& evidence = result.evidence;
   evidence.cells = cellsCovered(camera, result.inliers);
-  evidence.median_distance = medianOf(std::move(distances));
+  evidence.median_distance = upperMedian(distances);
   evidence.position_sigma = largestSigma(last.pose.covariance.topLeftCorner<3, 3>()) / evidence.median_distance;
   std::vector<KeyframeId> keyframes;
   const Pose& pose = last.pose.world_T_camera;
   const SearchPoints around = searchPoints(map, points, pose, keyframes);
   evidence.explained =
       explainedShare(frame.edges, visiblePoints(camera, around, pose, options.search), options.explained_edges);
-  evidence.rotation_sigma_deg = largestSigma(last.pose.covariance.bottomRightCorner<3, 3>()) * 180 / M_PI;
+  evidence.rotation_sigma_deg = degrees(largestSigma(last.pose.covariance.bottomRightCorner<3, 3>()));
   result.reason = reasonToRefuse(evidence, options);
   result.accepted = result.reason.empty();
   return result;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "places/loop_search.h"
+#include "places/similarity_estimation.h"
 
 namespace edgeslam {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry/angles.h"
 #include "geometry/resectioning.h"
 
 namespace edgeslam {
@@ -180,7 +181,7 @@ void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
   const auto different = [&](const Pose& pose) {
     const double distance = (pose.translation - result.world_T_camera.translation).norm();
     return distance > options_.rival_distance * result.evidence.median_distance ||
-           rotationAngle(pose.rotation, result.world_T_camera.rotation) > options_.rival_rotation_deg * M_PI / 180;
+           rotationAngle(pose.rotation, result.world_T_camera.rotation) > radians(options_.rival_rotation_deg);
   };
   int followed_up = 0;
   for (const Screened& look : screened) {

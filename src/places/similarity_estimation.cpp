@@ -1,11 +1,13 @@
-// The similarity of P26: Horn's method in RANSAC, and its refinement on whitened reprojection errors.
+#include "places/similarity_estimation.h"
+
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "adjustment/reprojection.h"
-#include "places/loop_verification.h"
 
 namespace edgeslam {
 namespace {
@@ -145,6 +147,7 @@ Similarity refineSimilarity(const Camera& camera, const std::vector<PlaceCorresp
 
 SimilarityEstimate estimateSimilarity(const Camera& camera, const std::vector<PlaceCorrespondence>& pairs,
                                       double outlier, int fewest_inliers, int iterations, std::uint64_t seed) {
+  assert(std::all_of(pairs.begin(), pairs.end(), [](const PlaceCorrespondence& pair) { return pair.paired; }));
   SimilarityEstimate estimate;
   const std::size_t count = pairs.size();
   if (count < 3 || static_cast<int>(count) < fewest_inliers) return estimate;

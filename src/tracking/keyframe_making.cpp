@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/angles.h"
 #include "tracking/frame_preparation.h"
 
 namespace edgeslam {
@@ -46,7 +47,7 @@ void KeyframeMaking::choosePointsOfFirst(FollowedFrame& frame, const PointAccura
 KeyframeDecision KeyframeMaking::judge(const MapView& view, const FollowedFrame& frame) const {
   KeyframeEvidence evidence;
   evidence.rotation_deg =
-      rotationAngle(view.keyframes.back().world_T_camera.rotation, frame.world_T_camera.rotation) * 180.0 / M_PI;
+      degrees(rotationAngle(view.keyframes.back().world_T_camera.rotation, frame.world_T_camera.rotation));
   for (const Track& track : frame.tracks)
     evidence.mean_displacement_px += (track.pixel - track.last_keyframe_pixel).norm();
   evidence.mean_displacement_px /= std::max<double>(1, static_cast<double>(frame.tracks.size()));

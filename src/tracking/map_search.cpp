@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "flow/patch_alignment.h"
+#include "geometry/angles.h"
 #include "tracking/patch_refinement.h"
 
 namespace edgeslam {
@@ -87,7 +88,7 @@ std::optional<FoundPoint> findPatch(const SearchPoint& point, const VisiblePoint
 VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, const Pose& world_T_camera,
                             const MapSearchOptions& options, std::pmr::memory_resource* memory) {
   const Pose camera_T_world = world_T_camera.inverse();
-  const double least_cosine = std::cos(options.largest_angle_deg * M_PI / 180);
+  const double least_cosine = std::cos(radians(options.largest_angle_deg));
   const double largest_area = options.largest_scale * options.largest_scale;
   VisiblePoints visible(memory);
   visible.reserve(points.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/median.h"
 #include "geometry/undistortion.h"
 
 namespace edgeslam {
@@ -92,9 +93,7 @@ double medianDepth(const std::vector<Track>& tracks, const MapView& view, const 
       depths.push_back((worldPosition(view, *point) - world_T_camera.translation).norm());
     }
   }
-  if (depths.empty()) return fallback;
-  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-  return depths[depths.size() / 2];
+  return depths.empty() ? fallback : upperMedian(depths);
 }
 
 FlowMatches followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,

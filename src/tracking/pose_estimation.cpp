@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/median.h"
 #include "geometry/resectioning.h"
 
 namespace edgeslam {
@@ -33,10 +34,7 @@ double medianInverseDepth(const MapView& view, const std::vector<Track>& tracks,
       values.push_back(1 / (camera_T_world * worldPosition(view, *point)).norm());
     }
   }
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? 0 : upperMedian(values);
 }
 
 // Tracks that have no depth yet: with one that is little more than a guess, what they measure is where they are across

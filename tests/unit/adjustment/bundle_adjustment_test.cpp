@@ -1,3 +1,4 @@
+// P19: bundle adjustment finds the minimum that Ceres finds, among outliers and with what is held fixed.
 #include "adjustment/bundle_adjustment.h"
 
 #include <gtest/gtest.h>

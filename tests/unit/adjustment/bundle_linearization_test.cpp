@@ -1,3 +1,4 @@
+// P19: the reduced normal equations are those of the whole problem.
 #include "adjustment/bundle_linearization.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P16: a camera's pose adjusted to points of known depth, and its covariance.
 #include "adjustment/pose_adjustment.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P27: drift is shared out over a pose graph.
 #include "adjustment/pose_graph.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P19: the residual that adjustments minimise, and its derivatives.
 #include "adjustment/reprojection.h"
 
 #include <gtest/gtest.h>

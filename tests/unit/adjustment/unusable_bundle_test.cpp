@@ -1,4 +1,4 @@
-// What bundle adjustment does with problems that have no answer, or a wrong part.
+// P19: what bundle adjustment does with problems that have no answer, or a wrong part.
 #include <gtest/gtest.h>
 
 #include <limits>

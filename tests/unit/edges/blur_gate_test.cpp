@@ -1,3 +1,4 @@
+// P4: blurred images are told by their edges, against a threshold that adapts.
 #include "edges/blur_gate.h"
 
 #include <gtest/gtest.h>

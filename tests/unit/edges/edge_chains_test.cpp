@@ -1,3 +1,4 @@
+// P3: edge points are joined along the edge into chains.
 #include "edges/edge_chains.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P1, P2: edges lie where they were drawn, one pixel wide, whatever the lighting.
 #include "edges/edge_detection.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P3: the neighbours along an edge are the same ones on every instruction set.
 #include "edges/edge_neighbours.h"
 
 #include <gtest/gtest.h>

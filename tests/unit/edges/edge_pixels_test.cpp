@@ -1,3 +1,4 @@
+// P1: the pixels through which edges run are the same bits on every instruction set.
 #include "edges/edge_pixels.h"
 
 #include <gtest/gtest.h>

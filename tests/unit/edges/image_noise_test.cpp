@@ -1,3 +1,4 @@
+// How much noise an image has is measured in it.
 #include "edges/image_noise.h"
 
 #include <gtest/gtest.h>

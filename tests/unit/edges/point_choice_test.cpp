@@ -1,3 +1,4 @@
+// Points to track are chosen all over the image, along chains and in every direction.
 #include "edges/point_choice.h"
 
 #include <gtest/gtest.h>

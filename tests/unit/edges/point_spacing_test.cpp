@@ -1,3 +1,4 @@
+// P6: points very close to one another are told.
 #include "edges/point_spacing.h"
 
 #include <gtest/gtest.h>

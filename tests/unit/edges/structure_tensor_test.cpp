@@ -1,3 +1,4 @@
+// How well and in which direction the grey values around a pixel tell where it is.
 #include "edges/structure_tensor.h"
 
 #include <gtest/gtest.h>

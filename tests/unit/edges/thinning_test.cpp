@@ -1,3 +1,4 @@
+// P2: of two points across the same edge one stays.
 #include "edges/thinning.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P5: the flow follows patches through the pyramid, forward and backward.
 #include "flow/optical_flow.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P5: a patch is aligned where it was moved to, in other light and warped too.
 #include "flow/patch_alignment.h"
 
 #include <gtest/gtest.h>

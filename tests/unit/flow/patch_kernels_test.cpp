@@ -1,3 +1,4 @@
+// P5: the sums that patches are aligned by have the same bits on every instruction set.
 #include "flow/patch_kernels.h"
 
 #include <gtest/gtest.h>

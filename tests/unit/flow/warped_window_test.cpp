@@ -1,3 +1,4 @@
+// P5: a warped window's samples have the same bits on every instruction set.
 #include "flow/warped_window.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Camera models: projection, its derivative, and bearings that invert it.
 #include "geometry/camera.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The relative pose of two views, where the matches' errors run on from good to bad without a gap.
+// P14: the relative pose of two views, where the matches' errors run on from good to bad without a gap.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// P8, P14, P21: the relative pose of two views, in noise, among outliers and where a rotation explains all.
 #include "geometry/epipolar.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Rigid transformations and the exponential map of rotations.
 #include "geometry/pose.h"
 
 #include <gtest/gtest.h>

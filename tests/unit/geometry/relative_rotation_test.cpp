@@ -1,4 +1,4 @@
-// The rotation alone between two views, where many matches do not follow it.
+// P8, P13: the rotation alone between two views, where many matches do not follow it.
 #include "geometry/relative_rotation.h"
 
 #include <gtest/gtest.h>

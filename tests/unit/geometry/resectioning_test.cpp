@@ -1,3 +1,4 @@
+// P16: the camera's pose from points of known place, among outliers and in degenerate sets.
 #include "geometry/resectioning.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P26: Horn's method gives the similarity between two sets of points.
 #include "geometry/similarity.h"
 
 #include <gtest/gtest.h>

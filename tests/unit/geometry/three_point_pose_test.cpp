@@ -1,3 +1,4 @@
+// P16: the poses that three points and their bearings allow.
 #include "geometry/three_point_pose.h"
 
 #include <gtest/gtest.h>

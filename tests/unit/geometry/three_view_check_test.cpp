@@ -1,3 +1,4 @@
+// P7: the middle view's pixel is held against where the other two views' epipolar lines cross.
 #include "geometry/three_view_check.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P17: the depth of a point, its uncertainty, and what has none.
 #include "geometry/triangulation.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// What is known of one camera, carried over to another that is known relative to it.
 #include "geometry/uncertainty.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Bearings of many pixels at a time have the bits of one after the other.
 #include "geometry/undistortion.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P1: the difference of Gaussians is that of the formula, and the same bits on every instruction set.
 #include "image/difference_of_gaussians.h"
 
 #include <gtest/gtest.h>

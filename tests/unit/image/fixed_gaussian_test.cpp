@@ -1,3 +1,4 @@
+// P1: the weights of a Gaussian blur sum up to one and follow the Gaussian's shape.
 #include "image/fixed_gaussian.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Sums of gradient products over a window, which a structure tensor is made of, on every instruction set.
 #include "image/gradient_products.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P5: an image halved for the pyramid of the flow, the same bits on every instruction set.
 #include "image/halving.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P5: the image pyramid that the flow runs on, and its mirrored borders.
 #include "image/pyramid.h"
 
 #include <gtest/gtest.h>

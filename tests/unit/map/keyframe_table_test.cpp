@@ -1,3 +1,4 @@
+// Entries by keyframe number, where numbers have gaps.
 #include "map/keyframe_table.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What was done to a copy of the map, applied to the same map and to one that has grown since.
+// P20, P27: what was done to a copy of the map, applied to the same map and to one that has grown since.
 #include "map/map_change.h"
 
 #include <gtest/gtest.h>

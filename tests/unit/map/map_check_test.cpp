@@ -1,3 +1,4 @@
+// What is wrong with a map is named.
 #include "map/map_check.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// A saved map comes back to the last bit, and a damaged one is refused.
 #include "map/map_file.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P18: points that keyframes share, and what tracking sees of the map.
 #include "map/map.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Maps are saved whole or not at all, and read back for the same camera.
 #include "map/saved_map.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What an adjustment says of the depths of its points, and that it says it of those alone that it saw.
+// P19: what an adjustment says of the depths of its points, and that it says it of those alone that it saw.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// P20: bundle adjustment of all keyframes and points.
 #include "mapping/global_adjustment.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P13, P14, P15: the start of the map, and scenes and motions that give none.
 #include "mapping/initialisation.h"
 
 #include <gtest/gtest.h>

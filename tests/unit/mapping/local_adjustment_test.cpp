@@ -1,3 +1,4 @@
+// P18, P19: bundle adjustment around the new keyframe, and what it takes out.
 #include "mapping/local_adjustment.h"
 
 #include <gtest/gtest.h>

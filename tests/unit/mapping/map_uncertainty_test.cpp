@@ -1,3 +1,4 @@
+// How far the map may have drifted grows along the way and shrinks at old points.
 #include "mapping/map_uncertainty.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P7, P17: tracks become map points where their views agree on a depth.
 #include "mapping/new_points.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P15: the quality factor is high for a true structure and low for one torn apart.
 #include "mapping/quality_factor.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// What tracking gets to see of the map: what is near, and nothing of what is not.
 #include "mapping/view_of_map.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P23: signatures of the same place are alike, and those of others are not.
 #include "places/edge_signature.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P22: how much of a frame the map explains.
 #include "places/explained_edges.h"
 
 #include <gtest/gtest.h>

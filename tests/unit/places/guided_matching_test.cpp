@@ -1,4 +1,4 @@
-// A point that several keyframes saw is looked for by the picture of the one that saw it most like from here.
+// P26: a point that several keyframes saw is looked for by the picture of the one that saw it most like from here.
 #include "places/guided_matching.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Each demand on a pose found by guided search refuses just beyond what speaks for the pose, and not short of it.
+// P22, P26: each demand on a pose found by guided search refuses just beyond what speaks for the pose, and not short of
+// it.
 #include "places/guided_search.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P26: descriptors find the same points in another view.
 #include "places/keyframe_matching.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P27: a verified loop corrects the map and merges its points.
 #include "places/loop_correction.h"
 
 #include <gtest/gtest.h>

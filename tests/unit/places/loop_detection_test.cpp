@@ -1,3 +1,4 @@
+// P24, P25: the bar for a loop, and three consecutive keyframes over it.
 #include "places/loop_detection.h"
 
 #include <gtest/gtest.h>

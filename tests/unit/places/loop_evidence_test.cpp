@@ -1,4 +1,4 @@
-// What counts for a loop: depths as certain as they say on either side, and inliers all over the image.
+// P26: what counts for a loop: depths as certain as they say on either side, and inliers all over the image.
 #include <gtest/gtest.h>
 
 #include <cstdio>

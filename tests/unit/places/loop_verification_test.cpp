@@ -1,3 +1,4 @@
+// P26: the same place is accepted, and doubts refuse.
 #include "places/loop_verification.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,10 @@
+// P26: the similarity between two sides of a loop is found among wrong pairs, and refined.
+#include "places/similarity_estimation.h"
+
 #include <gtest/gtest.h>
 
 #include <numeric>
 
-#include "places/loop_verification.h"
 #include "unit/adjustment/synthetic_scene.h"
 
 namespace edgeslam {

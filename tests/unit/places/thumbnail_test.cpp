@@ -1,4 +1,4 @@
-// Thumbnails tell how a camera turned between two images.
+// P22: thumbnails tell how a camera turned between two images.
 #include "places/thumbnail.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Points of straight edges are moved along them to where the pose says.
 #include "tracking/edge_lock.h"
 
 #include <gtest/gtest.h>

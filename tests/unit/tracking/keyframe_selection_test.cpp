@@ -1,3 +1,4 @@
+// P8 to P12: each criterion makes a keyframe by itself.
 #include "tracking/keyframe_selection.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Map points that came into view again are found and followed on.
 #include "tracking/map_reuse.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// How well a track is known across and along its edge.
 #include "tracking/measurement_accuracy.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The pixel of a track is refined against its patch in a keyframe.
 #include "tracking/patch_refinement.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// P5, P6: tracks are found again in the next frame, and those that fail are dropped.
 #include "tracking/point_following.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Of two poses that points agree with, which one a frame gets: something that moves may have drawn the first to itself.
+// P16: of two poses that points agree with, which one a frame gets: something that moves may have drawn the first to
+// itself.
 #include <gtest/gtest.h>
 
 #include <memory>

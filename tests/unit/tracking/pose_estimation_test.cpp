@@ -1,3 +1,4 @@
+// P16: the pose of a frame from its tracks' map points, from the prediction or by resectioning.
 #include "tracking/pose_estimation.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The rotation between two frames from their small images.
 #include "tracking/rotation_alignment.h"
 
 #include <gtest/gtest.h>

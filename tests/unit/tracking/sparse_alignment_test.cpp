@@ -1,3 +1,4 @@
+// The motion between two frames from small patches around all tracks.
 #include "tracking/sparse_alignment.h"
 
 #include <gtest/gtest.h>
