@@ -163,19 +163,30 @@ bool isCalibration(const YAML::Node& document) {
 }
 
 std::vector<ConfigurationKey> calibrationKeyNames() {
-  Camera pinhole, fisheye;
-  fisheye.model = CameraModel::kannala_brandt;
+  struct Shown {
+    const char *name, *example, *documentation;  // documented before the first of several that go together
+  };
+  constexpr std::array<Shown, 12> shown{{
+      {"width", "640", "image size [px]"},
+      {"height", "480", ""},
+      {"fx", "520.9", "focal lengths [px]"},
+      {"fy", "521.0", ""},
+      {"cx", "325.1", "principal point [px]; the centre of the top-left pixel is (0, 0)"},
+      {"cy", "249.7", ""},
+      {"k1", "0.2312", "distortion as OpenCV's; a fisheye lens has k1 k2 k3 k4; missing coefficients are 0"},
+      {"k2", "-0.7849", ""},
+      {"p1", "-0.0033", ""},
+      {"p2", "-0.0001", ""},
+      {"k3", "0.9172", ""},
+      {"k4", "0", ""},
+  }};
   std::vector<ConfigurationKey> names;
-  for (Camera* camera : {&pinhole, &fisheye}) {
-    for (const CalibrationKey& known : calibrationKeys(*camera)) {
-      const auto is_there = [&](const ConfigurationKey& name) { return name.path == known.key.path; };
-      if (std::any_of(names.begin(), names.end(), is_there)) continue;
-      ConfigurationKey& name = names.emplace_back(known.key);
-      name.documentation += " (" + expectedValue(known.key) + ")";
-      name.field = std::monostate{};
-      name.example = known.is_needed ? "1" : "0";
-      name.for_users = true;
-    }
+  for (const Shown& key : shown) {
+    ConfigurationKey& name = names.emplace_back();
+    name.path = std::string("camera.") + key.name;
+    name.documentation = key.documentation;
+    name.example = key.example;
+    name.for_users = true;
   }
   return names;
 }

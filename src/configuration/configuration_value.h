@@ -12,13 +12,13 @@ using ConfigurationField = std::variant<std::monostate, double*, int*, bool*, st
 struct ConfigurationKey {
   std::string path;  // "edges.sigma"; "edges" for a heading
   ConfigurationField field;
-  std::string unit;           // empty where it is a plain number
-  double least = 0;           // both bounds are allowed values; without meaning where it is no number
-  double largest = 0;         // likewise
-  std::string documentation;  // a line or more
-  int step = 1;               // of a whole number: least, least + step, ...
-  std::string example;        // of a value; where it is given, the default is not one that can be written
-  bool for_users = false;     // in edgeslam.yaml; the others are in expert.yaml
+  std::string unit{};           // empty where it is a plain number
+  double least = 0;             // both bounds are allowed values; without meaning where it is no number
+  double largest = 0;           // likewise
+  std::string documentation{};  // a line or more
+  int step = 1;                 // of a whole number: least, least + step, ...
+  std::string example{};        // of a value; where it is given, the default is not one that can be written
+  bool for_users = false;       // in edgeslam.yaml; the others are in expert.yaml
 
   bool isHeading() const { return path.find('.') == std::string::npos; }
   bool hasField() const { return !std::holds_alternative<std::monostate>(field); }

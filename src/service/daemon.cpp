@@ -3,7 +3,6 @@
 #include <chrono>
 #include <utility>
 
-#include "configuration/configuration_text.h"
 #include "drivers/cameras/open_camera.h"
 #include "map/saved_map.h"
 

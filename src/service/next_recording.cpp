@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "configuration/configuration_text.h"
 #include "edgeslam/input_error.h"
 #include "map/saved_map.h"
 #include "service/failure_message.h"
