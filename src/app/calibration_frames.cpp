@@ -10,14 +10,15 @@
 #include "calibration/coverage.h"
 #include "files/format_text.h"
 #include "frames/folder_source.h"
+#include "recording/open_frame_source.h"
 
 namespace edgeslam {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kViewsToAnError = 5;  // between two fits on the way
-constexpr std::int64_t kSilence_ns = 4'000'000'000;
+constexpr std::size_t views_to_an_error = 5;  // between two fits on the way
+constexpr std::int64_t silence_ns = 4'000'000'000;
 
 // What is said while views are taken.
 class Guide {
@@ -26,7 +27,7 @@ class Guide {
 
   void afterView(const ViewSelection& selection) {
     const Coverage coverage = coverageOf(selection.views(), selection.imageSize());
-    if (selection.views().size() % kViewsToAnError == 0) {
+    if (selection.views().size() % views_to_an_error == 0) {
       const std::optional<double> error = quickError(selection.views(), board_, selection.imageSize());
       error_ = error ? formatted(", error so far %.2f px", *error) : "";
     }
@@ -38,7 +39,7 @@ class Guide {
 
   void afterNoView(ViewDecision decision, std::int64_t time_ns) {
     const char* why = reason(decision);
-    if (why == nullptr || time_ns - told_ns_ < kSilence_ns) return;
+    if (why == nullptr || time_ns - told_ns_ < silence_ns) return;
     told_ns_ = time_ns;
     tell_(std::string("  ") + why + (wish_.empty() ? "" : "; wanted: " + wish_));
   }
@@ -104,9 +105,9 @@ std::unique_ptr<FrameSource> openStillsOrFrames(const std::string& path) {
   if (images.empty() || has_times) return openFrameSource(path);
   std::sort(images.begin(), images.end());
   std::vector<StampedFile> files;
-  constexpr std::int64_t kApart_ns = 1'000'000'000;
+  constexpr std::int64_t apart_ns = 1'000'000'000;
   for (const std::string& image : images) {
-    files.push_back({static_cast<std::int64_t>(files.size()) * kApart_ns, image});
+    files.push_back({static_cast<std::int64_t>(files.size()) * apart_ns, image});
   }
   return makeFolderSource("folder of stills", std::move(files), {});
 }

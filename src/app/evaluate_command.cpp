@@ -12,7 +12,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
+constexpr double degrees_per_radian = 180.0 / 3.14159265358979323846;
 
 std::map<std::string, Alignment> alignmentNames() {
   return {{"similarity", Alignment::similarity}, {"rigid", Alignment::rigid}, {"none", Alignment::none}};
@@ -69,7 +69,7 @@ int runEvaluate(const EvaluateArguments& arguments) {
     json["relative_error"] = {{"delta_s", arguments.delta_s},
                               {"pairs", relative.pairs},
                               {"translation_m", toJson(relative.translation)},
-                              {"rotation_deg", toJson(relative.rotation, kDegreesPerRadian)}};
+                              {"rotation_deg", toJson(relative.rotation, degrees_per_radian)}};
     json["coverage"] = {{"estimated_poses", estimate.size()},
                         {"reference_poses", reference.size()},
                         {"time_share", covered.time_share},
@@ -90,7 +90,7 @@ int runEvaluate(const EvaluateArguments& arguments) {
             << heading << "\n"
             << row("absolute, position", "m", absolute.pairs, absolute.translation, 1, 5)
             << row("relative, position / " + interval, "m", relative.pairs, relative.translation, 1, 5)
-            << row("relative, rotation / " + interval, "deg", relative.pairs, relative.rotation, kDegreesPerRadian, 4)
+            << row("relative, rotation / " + interval, "deg", relative.pairs, relative.rotation, degrees_per_radian, 4)
             << "coverage " << fixed(100 * covered.time_share, 1) << " % of the reference's time, "
             << fixed(100 * covered.pose_share, 1) << " % of its " << reference.size() << " poses ("
             << fixed(100 * covered.pose_share_after_start, 1) << " % from the first estimated pose on, which comes at "

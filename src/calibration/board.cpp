@@ -11,12 +11,12 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::array<std::pair<const char*, BoardKind>, 3> kKinds{
+constexpr std::array<std::pair<const char*, BoardKind>, 3> kinds{
     {{"chessboard", BoardKind::chessboard}, {"charuco", BoardKind::charuco}, {"aprilgrid", BoardKind::aprilgrid}}};
-constexpr std::array<std::pair<const char*, MarkerFamily>, 4> kFamilies{{{"4x4", MarkerFamily::aruco_4x4},
-                                                                         {"5x5", MarkerFamily::aruco_5x5},
-                                                                         {"6x6", MarkerFamily::aruco_6x6},
-                                                                         {"7x7", MarkerFamily::aruco_7x7}}};
+constexpr std::array<std::pair<const char*, MarkerFamily>, 4> families{{{"4x4", MarkerFamily::aruco_4x4},
+                                                                        {"5x5", MarkerFamily::aruco_5x5},
+                                                                        {"6x6", MarkerFamily::aruco_6x6},
+                                                                        {"7x7", MarkerFamily::aruco_7x7}}};
 
 std::vector<std::string> splitAtColons(const std::string& text) {
   std::vector<std::string> parts;
@@ -73,7 +73,7 @@ Board parseBoard(const std::string& text) {
   const std::vector<std::string> parts = splitAtColons(text);
   Board board;
   bool known = false;
-  for (const auto& [name, kind] : kKinds) {
+  for (const auto& [name, kind] : kinds) {
     if (parts.empty() || parts[0] != name) continue;
     board.kind = kind;
     known = true;
@@ -94,7 +94,7 @@ Board parseBoard(const std::string& text) {
   }
   if (parts.size() == 5) {
     known = false;
-    for (const auto& [name, family] : kFamilies) {
+    for (const auto& [name, family] : families) {
       if (parts[4] != name) continue;
       board.family = family;
       known = true;
@@ -107,14 +107,14 @@ Board parseBoard(const std::string& text) {
 
 std::string boardText(const Board& board) {
   std::string text;
-  for (const auto& [name, kind] : kKinds) {
+  for (const auto& [name, kind] : kinds) {
     if (kind == board.kind) text = name;
   }
   text += ":" + std::to_string(board.columns) + "x" + std::to_string(board.rows) + ":" + lengthText(board.square_m);
   if (board.kind == BoardKind::aprilgrid) return text + ":" + numberText(board.spacing);
   if (board.kind == BoardKind::chessboard) return text;
   text += ":" + lengthText(board.marker_m);
-  for (const auto& [name, family] : kFamilies) {
+  for (const auto& [name, family] : families) {
     if (family == board.family && family != MarkerFamily::aruco_5x5) text += std::string(":") + name;
   }
   return text;

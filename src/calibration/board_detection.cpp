@@ -14,9 +14,9 @@
 namespace edgeslam {
 namespace {
 
-constexpr int kLargestSide = 1400;  // of the image that chessboards are looked for in [px]
-constexpr int kLargestWindow = 10;  // half the side of the window that a corner is refined in [px]
-constexpr std::size_t kFewestCorners = 6;
+constexpr int largest_side = 1400;  // of the image that chessboards are looked for in [px]
+constexpr int largest_window = 10;  // half the side of the window that a corner is refined in [px]
+constexpr std::size_t fewest_corners = 6;
 
 cv::Point2f toPoint(const Eigen::Vector2d& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
 
@@ -28,7 +28,7 @@ bool isInside(const cv::Mat& grey, const cv::Point2f& p, float border) {
 // Moves corners to the nearest saddle of the grey values; drops those that would go further than the window reaches.
 void refineCorners(const cv::Mat& grey, int window, std::vector<int>& numbers, std::vector<cv::Point2f>& pixels) {
   if (pixels.empty()) return;
-  const int half = std::clamp(window, 2, kLargestWindow);
+  const int half = std::clamp(window, 2, largest_window);
   std::vector<cv::Point2f> refined = pixels;
   cv::cornerSubPix(grey, refined, {half, half}, {-1, -1}, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3});
   std::vector<int> kept_numbers;
@@ -50,7 +50,7 @@ struct FoundCorners {
 
 FoundCorners findChessboard(const cv::Mat& grey, const Board& board) {
   const int side = std::max(grey.cols, grey.rows);
-  const double scale = side > kLargestSide ? static_cast<double>(kLargestSide) / side : 1;
+  const double scale = side > largest_side ? static_cast<double>(largest_side) / side : 1;
   cv::Mat small = grey;
   if (scale < 1) cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
   FoundCorners found;
@@ -183,8 +183,8 @@ double blurAt(const cv::Mat& grey, const Eigen::Vector2d& pixel, int half) {
   const std::array<double, 2> slopes = slopesOfEdges(dx, dy);
   if (slopes[1] <= 0) return -1;
   const double seen = (brightest - darkest) / (slopes[1] * std::sqrt(2 * CV_PI));
-  constexpr double kOwn = 0.7 * 0.7 + 0.5;  // variance that the smoothing and Sobel's differences add
-  return std::sqrt(std::max(0.0, seen * seen - kOwn));
+  constexpr double own = 0.7 * 0.7 + 0.5;  // variance that the smoothing and Sobel's differences add
+  return std::sqrt(std::max(0.0, seen * seen - own));
 }
 
 double medianBlur(const cv::Mat& grey, const std::vector<BoardCorner>& corners, double square_px) {
@@ -203,7 +203,7 @@ std::optional<BoardSighting> detectBoard(const cv::Mat& grey, const Board& board
   const FoundCorners found = board.kind == BoardKind::chessboard ? findChessboard(grey, board)
                              : board.kind == BoardKind::charuco  ? findCharuco(grey, board)
                                                                  : findAprilGrid(grey, board);
-  if (found.numbers.size() < kFewestCorners) return std::nullopt;
+  if (found.numbers.size() < fewest_corners) return std::nullopt;
   BoardSighting sighting;
   for (std::size_t i = 0; i < found.numbers.size(); ++i) {
     sighting.corners.push_back({found.numbers[i], {found.pixels[i].x, found.pixels[i].y}});

@@ -12,8 +12,8 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kSpacingTolerance = 0.03;  // of a tag's side
-constexpr std::size_t kViewsLookedAt = 3;
+constexpr double spacing_tolerance = 0.03;  // of a tag's side
+constexpr std::size_t views_looked_at = 3;
 
 std::optional<std::array<cv::Point2f, 4>> tagOf(const BoardSighting& sighting, int tag) {
   std::array<cv::Point2f, 4> corners;
@@ -53,14 +53,14 @@ double seenSpacing(const std::vector<BoardView>& views, const Board& board) {
 std::string boardMismatch(const std::vector<BoardView>& views, const Board& board) {
   if (board.kind == BoardKind::aprilgrid) {
     const double seen = seenSpacing(views, board);
-    if (std::abs(seen - board.spacing) <= kSpacingTolerance) return "";
+    if (std::abs(seen - board.spacing) <= spacing_tolerance) return "";
     return formatted("the gaps between the tags look like %.2f of a tag's side, not %.2f", seen, board.spacing);
   }
   if (board.kind == BoardKind::charuco) return "";
   // A part of a larger chessboard can be taken for the whole.
   std::vector<cv::Size> seen;
-  for (std::size_t i = 0; i < std::min(kViewsLookedAt, views.size()); ++i) {
-    const cv::Size size = chessboardSeen(views[i * views.size() / kViewsLookedAt].grey);
+  for (std::size_t i = 0; i < std::min(views_looked_at, views.size()); ++i) {
+    const cv::Size size = chessboardSeen(views[i * views.size() / views_looked_at].grey);
     if (size.area() > board.columns * board.rows) seen.push_back(size);
   }
   if (seen.size() < 2 || seen[0] != seen[1]) return "";

@@ -16,8 +16,8 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kMargin_mm = 8;  // that printers leave white
-constexpr double kRuler_mm = 16;  // height of the strip with ruler and text, gap to the board included
+constexpr double margin_mm = 8;  // that printers leave white
+constexpr double ruler_mm = 16;  // height of the strip with ruler and text, gap to the board included
 
 const std::array<Paper, 9>& papers() {
   static const std::array<Paper, 9> list{{{"A5", 148, 210},
@@ -88,11 +88,11 @@ class Page {
 };
 
 void addRuler(Page& page, double left, double top) {
-  constexpr double kLine_mm = 0.2;
-  page.addRectangle(left, top, left + 100, top + kLine_mm);
+  constexpr double line_mm = 0.2;
+  page.addRectangle(left, top, left + 100, top + line_mm);
   for (int mm = 0; mm <= 100; mm += 5) {
-    const double middle = std::clamp(left + mm, left + kLine_mm / 2, left + 100 - kLine_mm / 2);
-    page.addRectangle(middle - kLine_mm / 2, top + kLine_mm, middle + kLine_mm / 2, top + (mm % 10 == 0 ? 4 : 2.5));
+    const double middle = std::clamp(left + mm, left + line_mm / 2, left + 100 - line_mm / 2);
+    page.addRectangle(middle - line_mm / 2, top + line_mm, middle + line_mm / 2, top + (mm % 10 == 0 ? 4 : 2.5));
   }
 }
 
@@ -103,20 +103,20 @@ struct PageSize {
 // The side of the square, of whole or half millimetres, with which the board would fit; 0 where none does.
 double fittingSquare_mm(const BoardRectangle& extent, double square_m, const PageSize& page) {
   const double width = extent.right_m - extent.left_m, height = extent.bottom_m - extent.top_m;
-  const double factor = std::min((page.width_mm - 2 * kMargin_mm) * 1e-3 / width,
-                                 (page.height_mm - 2 * kMargin_mm - kRuler_mm) * 1e-3 / height);
+  const double factor = std::min((page.width_mm - 2 * margin_mm) * 1e-3 / width,
+                                 (page.height_mm - 2 * margin_mm - ruler_mm) * 1e-3 / height);
   return factor > 0 ? std::floor(2e3 * square_m * factor + 1e-9) / 2 : 0;
 }
 
 bool fits(const BoardRectangle& extent, const PageSize& page) {
   const double width = 1e3 * (extent.right_m - extent.left_m), height = 1e3 * (extent.bottom_m - extent.top_m);
-  return width <= page.width_mm - 2 * kMargin_mm + 1e-6 && height <= page.height_mm - 2 * kMargin_mm - kRuler_mm + 1e-6;
+  return width <= page.width_mm - 2 * margin_mm + 1e-6 && height <= page.height_mm - 2 * margin_mm - ruler_mm + 1e-6;
 }
 
 [[noreturn]] void refuse(const Board& board, const BoardRectangle& extent, const Paper& paper, double fitting_mm) {
   const double width = 1e3 * (extent.right_m - extent.left_m), height = 1e3 * (extent.bottom_m - extent.top_m);
   std::string message = "the board " + boardText(board) + " does not fit " + paper.name + ": it is " +
-                        millimetres(width) + " x " + millimetres(height) + " mm, and " + millimetres(kMargin_mm) +
+                        millimetres(width) + " x " + millimetres(height) + " mm, and " + millimetres(margin_mm) +
                         " mm of margin and the ruler are added";
   for (const Paper& other : papers()) {
     if (!fits(extent, {other.width_mm, other.height_mm}) && !fits(extent, {other.height_mm, other.width_mm})) continue;
@@ -154,22 +154,22 @@ std::string boardPdf(const Board& board, const Paper& paper) {
   const double turned_fits_mm = fittingSquare_mm(extent, board.square_m, turned);
   const PageSize size = upright_fits_mm >= turned_fits_mm ? upright : turned;
   const double width = 1e3 * (extent.right_m - extent.left_m), height = 1e3 * (extent.bottom_m - extent.top_m);
-  const double free_height = size.height_mm - 2 * kMargin_mm - kRuler_mm;
+  const double free_height = size.height_mm - 2 * margin_mm - ruler_mm;
   if (!fits(extent, size)) {
     refuse(board, extent, paper, std::max(upright_fits_mm, turned_fits_mm));
   }
 
   Page page(size.width_mm, size.height_mm);
   const double left = (size.width_mm - width) / 2 - 1e3 * extent.left_m;
-  const double top = kMargin_mm + (free_height - height) / 2 - 1e3 * extent.top_m;
+  const double top = margin_mm + (free_height - height) / 2 - 1e3 * extent.top_m;
   for (const BoardRectangle& r : drawing.black) {
     page.addRectangle(left + 1e3 * r.left_m, top + 1e3 * r.top_m, left + 1e3 * r.right_m, top + 1e3 * r.bottom_m);
   }
-  const double strip = size.height_mm - kMargin_mm - 10;
-  addRuler(page, kMargin_mm, strip);
-  page.addText(kMargin_mm, strip + 7.5, 2.8,
+  const double strip = size.height_mm - margin_mm - 10;
+  addRuler(page, margin_mm, strip);
+  page.addText(margin_mm, strip + 7.5, 2.8,
                "This line must be 100 mm long. Print at 100 %, without fitting to the page.");
-  page.addText(kMargin_mm, strip + 11, 2.8, "edgeslam calibrate --board " + boardText(board) + " ...");
+  page.addText(margin_mm, strip + 11, 2.8, "edgeslam calibrate --board " + boardText(board) + " ...");
   return page.pdf();
 }
 

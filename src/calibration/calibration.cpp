@@ -13,11 +13,11 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::size_t kHeldBackOneIn = 5;
-constexpr double kFisheyeGain = 0.9;      // held-back error that the fisheye model must come below, of the pinhole's
-constexpr double kLargestError_px = 0.7;  // held-back, at an image 640 px wide
-constexpr double kLargestFocalSigma = 0.005;  // of the focal length
-constexpr double kLargestExpected_px = 3;     // standard deviation of a bearing's pixel, at an image 640 px wide
+constexpr std::size_t held_back_one_in = 5;
+constexpr double fisheye_gain = 0.9;      // held-back error that the fisheye model must come below, of the pinhole's
+constexpr double largest_error_px = 0.7;  // held-back, at an image 640 px wide
+constexpr double largest_focal_sigma = 0.005;  // of the focal length
+constexpr double largest_expected_px = 3;      // standard deviation of a bearing's pixel, at an image 640 px wide
 
 [[noreturn]] void refuse(const std::vector<std::string>& reasons) {
   std::string message = "these views make no calibration: ";
@@ -50,7 +50,7 @@ std::optional<HeldBackCheck> checkHeldBack(CameraModel model, cv::Size size, con
                                            const Board& board) {
   std::vector<ImagedView> used, held_back;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    (i % kHeldBackOneIn == kHeldBackOneIn / 2 ? held_back : used).push_back(views[i]);
+    (i % held_back_one_in == held_back_one_in / 2 ? held_back : used).push_back(views[i]);
   }
   const std::optional<ModelFit> fit = fitModel(model, size, used, board);
   if (!fit) return std::nullopt;
@@ -70,11 +70,11 @@ std::optional<HeldBackCheck> checkHeldBack(CameraModel model, cv::Size size, con
 
 // Standard deviation of the pixel of a bearing, over the image.
 void expectError(const ModelFit& fit, Calibration& calibration) {
-  constexpr int kSteps = 16;
+  constexpr int steps = 16;
   double sum = 0;
-  for (int row = 0; row <= kSteps; ++row) {
-    for (int column = 0; column <= kSteps; ++column) {
-      const Eigen::Vector2d pixel(column * (fit.camera.width - 1.0) / kSteps, row * (fit.camera.height - 1.0) / kSteps);
+  for (int row = 0; row <= steps; ++row) {
+    for (int column = 0; column <= steps; ++column) {
+      const Eigen::Vector2d pixel(column * (fit.camera.width - 1.0) / steps, row * (fit.camera.height - 1.0) / steps);
       const Eigen::Matrix<double, 2, camera_parameters> jacobian =
           parameterJacobian(fit.camera, bearing(fit.camera, pixel));
       const double variance = (jacobian * fit.covariance * jacobian.transpose()).trace();
@@ -82,24 +82,24 @@ void expectError(const ModelFit& fit, Calibration& calibration) {
       calibration.expected_max_px = std::max(calibration.expected_max_px, std::sqrt(variance));
     }
   }
-  calibration.expected_rms_px = std::sqrt(sum / ((kSteps + 1) * (kSteps + 1)));
+  calibration.expected_rms_px = std::sqrt(sum / ((steps + 1) * (steps + 1)));
 }
 
 std::vector<std::string> resultProblems(const Calibration& calibration, const Board& board) {
   std::vector<std::string> problems;
   const Camera& camera = calibration.camera;
   const double scale = std::max(1.0, camera.width / 640.0);
-  if (!(calibration.held_back_rms_px <= kLargestError_px * scale)) {
+  if (!(calibration.held_back_rms_px <= largest_error_px * scale)) {
     problems.push_back("corners in views held back are off by " + formatted("%.2f px", calibration.held_back_rms_px) +
-                       " (" + formatted("%.2f", kLargestError_px * scale) +
+                       " (" + formatted("%.2f", largest_error_px * scale) +
                        " is the limit): is the board flat, and is it " + boardText(board) + "?");
   }
   const double focal_sigma = std::max(calibration.sigma(0) / camera.fx, calibration.sigma(1) / camera.fy);
-  if (!(focal_sigma <= kLargestFocalSigma)) {
+  if (!(focal_sigma <= largest_focal_sigma)) {
     problems.push_back("the focal length is known to " + formatted("%.1f %%", 100 * focal_sigma) +
                        " only; add views of the board tilted by 20 to 45 degrees, near and far");
   }
-  if (!(calibration.expected_max_px <= kLargestExpected_px * scale)) {
+  if (!(calibration.expected_max_px <= largest_expected_px * scale)) {
     problems.push_back("the lens is known to " + formatted("%.1f px", calibration.expected_max_px) +
                        " only at the image's worst place; add views with the board in the image's corners");
   }
@@ -127,7 +127,7 @@ Calibration calibrate(const std::vector<BoardView>& views, const Board& board, c
     calibration.remarks.push_back(
         std::string(model == CameraModel::kannala_brandt ? "kannala_brandt" : "pinhole_radial_tangential") +
         ": error in views held back " + formatted("%.3f px", check->rms_px));
-    const bool is_better = best && check->rms_px < kFisheyeGain * best->rms_px;
+    const bool is_better = best && check->rms_px < fisheye_gain * best->rms_px;
     if (!best || is_better) best = check;
   }
   const std::optional<ModelFit> fit = best ? fitModel(best->model, size, imaged, board) : std::nullopt;

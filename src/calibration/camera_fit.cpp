@@ -11,8 +11,8 @@ using Matrix26d = Eigen::Matrix<double, 2, 6>;
 using Matrix29d = Eigen::Matrix<double, 2, camera_parameters>;
 using Matrix96d = Eigen::Matrix<double, camera_parameters, 6>;
 
-constexpr double kBehind_px = 1e4;  // error of what does not lie before the camera
-constexpr double kNearest = 1e-6;   // least depth over distance
+constexpr double behind_px = 1e4;  // error of what does not lie before the camera
+constexpr double nearest = 1e-6;   // least depth over distance
 
 struct ViewEquations {
   Matrix6d pose = Matrix6d::Zero();
@@ -30,7 +30,7 @@ struct Equations {
 bool isBefore(const Camera& camera, const Eigen::Vector3d& point) {
   if (!point.allFinite()) return false;
   if (camera.model == CameraModel::kannala_brandt) return point.norm() > 1e-12;
-  return point.z() > kNearest * point.norm();
+  return point.z() > nearest * point.norm();
 }
 
 double huberCost(double norm, double huber) { return norm <= huber ? 0.5 * norm * norm : huber * (norm - 0.5 * huber); }
@@ -112,9 +112,9 @@ CameraVector solveScaled(const CameraMatrix& matrix, const CameraVector& right) 
 
 Eigen::Vector2d cornerError(const Camera& camera, const Pose& camera_T_board, const MeasuredCorner& corner) {
   const Eigen::Vector3d point = camera_T_board * Eigen::Vector3d(corner.place_m.x(), corner.place_m.y(), 0);
-  if (!isBefore(camera, point)) return {kBehind_px, kBehind_px};
+  if (!isBefore(camera, point)) return {behind_px, behind_px};
   const Eigen::Vector2d error = project(camera, point) - corner.pixel;
-  return error.allFinite() && error.norm() < kBehind_px ? error : Eigen::Vector2d(kBehind_px, kBehind_px);
+  return error.allFinite() && error.norm() < behind_px ? error : Eigen::Vector2d(behind_px, behind_px);
 }
 
 FitResult fitCamera(Camera& camera, std::vector<FittedView>& views, const FitOptions& options) {

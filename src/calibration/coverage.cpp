@@ -6,12 +6,12 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kTilted_rad = 0.26;   // 15 degrees
-constexpr int kViewsWanted = 20;       // before the guidance is content
-constexpr int kFewestViews = 10;       // that a calibration is made of
-constexpr int kFewestTilted = 3;       // views, whichever way
-constexpr double kWantedFilled = 0.2;  // share of the image that the board takes once at least
-constexpr double kLeastFilled = 0.04;
+constexpr double tilted_rad = 0.26;    // 15 degrees
+constexpr int views_wanted = 20;       // before the guidance is content
+constexpr int fewest_views = 10;       // that a calibration is made of
+constexpr int fewest_tilted = 3;       // views, whichever way
+constexpr double wanted_filled = 0.2;  // share of the image that the board takes once at least
+constexpr double least_filled = 0.04;
 constexpr std::array<const char*, 9> kRegions{"top left", "top",         "top right", "left",        "middle",
                                               "right",    "bottom left", "bottom",    "bottom right"};
 
@@ -52,11 +52,11 @@ Coverage coverageOf(const std::vector<BoardView>& views, cv::Size size) {
     for (std::size_t i = 0; i < seen.size(); ++i) coverage.views_in_region[i] += seen[i] ? 1 : 0;
     const Eigen::Vector2d& tilt = view.look.tilt_rad;
     if (std::abs(tilt.x()) >= std::abs(tilt.y())) {
-      coverage.tilted_left += tilt.x() <= -kTilted_rad ? 1 : 0;
-      coverage.tilted_right += tilt.x() >= kTilted_rad ? 1 : 0;
+      coverage.tilted_left += tilt.x() <= -tilted_rad ? 1 : 0;
+      coverage.tilted_right += tilt.x() >= tilted_rad ? 1 : 0;
     } else {
-      coverage.tilted_up += tilt.y() <= -kTilted_rad ? 1 : 0;
-      coverage.tilted_down += tilt.y() >= kTilted_rad ? 1 : 0;
+      coverage.tilted_up += tilt.y() <= -tilted_rad ? 1 : 0;
+      coverage.tilted_down += tilt.y() >= tilted_rad ? 1 : 0;
     }
     coverage.largest_filled = std::max(coverage.largest_filled, view.look.filled);
   }
@@ -76,30 +76,30 @@ std::vector<std::string> missingViews(const Coverage& coverage) {
   wish(coverage.tilted_up, "up");
   wish(coverage.tilted_down, "down");
   if (!tilts.empty()) wishes.push_back("tilt the board by 20 to 45 degrees, so that it faces " + tilts);
-  if (coverage.largest_filled < kWantedFilled) {
+  if (coverage.largest_filled < wanted_filled) {
     wishes.push_back("come nearer: the board takes " + percent(coverage.largest_filled) + " of the image at most, " +
-                     percent(kWantedFilled) + " is wanted");
+                     percent(wanted_filled) + " is wanted");
   }
-  if (coverage.views < kViewsWanted) {
-    wishes.push_back(std::to_string(kViewsWanted - coverage.views) + " more views");
+  if (coverage.views < views_wanted) {
+    wishes.push_back(std::to_string(views_wanted - coverage.views) + " more views");
   }
   return wishes;
 }
 
 std::vector<std::string> coverageProblems(const Coverage& coverage) {
   std::vector<std::string> problems;
-  if (coverage.views < kFewestViews) {
+  if (coverage.views < fewest_views) {
     problems.push_back("there are " + std::to_string(coverage.views) + " usable views, at least " +
-                       std::to_string(kFewestViews) + " are needed");
+                       std::to_string(fewest_views) + " are needed");
     if (coverage.views == 0) return problems;
   }
-  if (coverage.largest_filled < kLeastFilled) {
+  if (coverage.largest_filled < least_filled) {
     problems.push_back("the board takes " + percent(coverage.largest_filled) +
                        " of the image at most; come nearer or print a larger one");
   }
   const std::string corners = regionsWithFewerThan(coverage, 1, true);
   if (!corners.empty()) problems.push_back("no view has the board in these parts of the image: " + corners);
-  if (tilted(coverage) < kFewestTilted) {
+  if (tilted(coverage) < fewest_tilted) {
     problems.push_back("the board is frontal in all views but " + std::to_string(tilted(coverage)) +
                        ", which does not determine the focal length; tilt it by 20 to 45 degrees");
   }
@@ -107,11 +107,11 @@ std::vector<std::string> coverageProblems(const Coverage& coverage) {
 }
 
 std::vector<std::string> coverageMap(const Coverage& coverage) {
-  constexpr int kMany = 20;
+  constexpr int many = 20;
   std::vector<std::string> lines;
   for (const auto& row : coverage.corners) {
     std::string line;
-    for (const int count : row) line += count == 0 ? '.' : count < kMany ? '+' : '#';
+    for (const int count : row) line += count == 0 ? '.' : count < many ? '+' : '#';
     lines.push_back(line);
   }
   return lines;

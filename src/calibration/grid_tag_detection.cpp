@@ -10,10 +10,10 @@ namespace {
 
 using Quadrangle = std::array<Eigen::Vector2d, 4>;
 
-constexpr int kCellPixels = 6;  // of a tag that is looked at from the front
-constexpr int kMostWrongCells = 4;
-constexpr double kLeastSide_px = 12;
-constexpr int kEnlarged = 1000;  // images with a longer side below this are looked at enlarged [px]
+constexpr int cell_pixels = 6;  // of a tag that is looked at from the front
+constexpr int most_wrong_cells = 4;
+constexpr double least_side_px = 12;
+constexpr int enlarged = 1000;  // images with a longer side below this are looked at enlarged [px]
 
 double shortestSide(const Quadrangle& q) {
   double shortest = 1e9;
@@ -34,7 +34,7 @@ Quadrangle grown(const Quadrangle& q, double by_px) {
 
 // The tag's cells as they look, 1 white, 0 black, border included; empty where the border is not black.
 cv::Mat readCells(const cv::Mat& grey, const Quadrangle& corners, int cells, int border) {
-  const int count = cells + 2 * border, side = count * kCellPixels;
+  const int count = cells + 2 * border, side = count * cell_pixels;
   std::array<cv::Point2f, 4> from, to;
   for (std::size_t i = 0; i < 4; ++i) {
     from[i] = {static_cast<float>(corners[i].x()), static_cast<float>(corners[i].y())};
@@ -48,12 +48,12 @@ cv::Mat readCells(const cv::Mat& grey, const Quadrangle& corners, int cells, int
   cv::resize(bits, means, {count, count}, 0, 0, cv::INTER_AREA);
   const cv::Mat inner = means(cv::Rect(border, border, cells, cells)) > 0.5F;
   const int white_in_border = cv::countNonZero(means > 0.5F) - cv::countNonZero(inner);
-  return white_in_border <= kMostWrongCells ? cv::Mat(inner / 255) : cv::Mat();
+  return white_in_border <= most_wrong_cells ? cv::Mat(inner / 255) : cv::Mat();
 }
 
 // The tag that looks like the cells, turned by so many quarters; number -1 where none does.
 struct Match {
-  int number = -1, quarters = 0, wrong = kMostWrongCells + 1;
+  int number = -1, quarters = 0, wrong = most_wrong_cells + 1;
 };
 
 Match matchTag(cv::Mat cells, const std::vector<cv::Mat>& tags) {
@@ -76,7 +76,7 @@ std::vector<DetectedMarker> detectGridTags(const cv::Mat& grey, const Board& boa
   std::vector<cv::Mat> tags;
   for (int i = 0; i < markerCount(board); ++i) tags.push_back(markerCells(family, i));
 
-  const double scale = std::max(grey.cols, grey.rows) < kEnlarged ? 2 : 1;
+  const double scale = std::max(grey.cols, grey.rows) < enlarged ? 2 : 1;
   cv::Mat image;
   cv::resize(grey, image, {}, scale, scale, cv::INTER_LINEAR);
   std::map<int, std::pair<int, DetectedMarker>> best;  // by number, with the wrong cells
@@ -84,7 +84,7 @@ std::vector<DetectedMarker> detectGridTags(const cv::Mat& grey, const Board& boa
     cv::Mat eaten;
     cv::dilate(image, eaten, cv::getStructuringElement(cv::MORPH_RECT, {2 * eaten_px + 1, 2 * eaten_px + 1}));
     for (const Quadrangle& found : darkQuadrangles(eaten)) {
-      if (shortestSide(found) < kLeastSide_px) continue;
+      if (shortestSide(found) < least_side_px) continue;
       const Quadrangle corners = grown(found, eaten_px);
       const cv::Mat cells = readCells(image, corners, tags.front().rows, border);
       if (cells.empty()) continue;

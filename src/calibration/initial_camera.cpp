@@ -9,14 +9,14 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::size_t kMostViews = 16;  // that the search looks at
-constexpr double kOutermost = 0.17;     // least z of a bearing: 80 degrees
+constexpr std::size_t most_views = 16;  // that the search looks at
+constexpr double outermost = 0.17;      // least z of a bearing: 80 degrees
 
 // Evenly over the views.
 std::vector<FittedView> someOf(const std::vector<FittedView>& views) {
-  if (views.size() <= kMostViews) return views;
+  if (views.size() <= most_views) return views;
   std::vector<FittedView> some;
-  for (std::size_t i = 0; i < kMostViews; ++i) some.push_back(views[i * views.size() / kMostViews]);
+  for (std::size_t i = 0; i < most_views; ++i) some.push_back(views[i * views.size() / most_views]);
   return some;
 }
 
@@ -35,7 +35,7 @@ std::optional<Pose> boardPose(const Camera& camera, const std::vector<MeasuredCo
   std::vector<cv::Point2d> places, seen;
   for (const MeasuredCorner& corner : corners) {
     const Eigen::Vector3d b = bearing(camera, corner.pixel);
-    if (!(b.z() > kOutermost)) continue;
+    if (!(b.z() > outermost)) continue;
     places.emplace_back(corner.place_m.x(), corner.place_m.y());
     seen.emplace_back(b.x() / b.z(), b.y() / b.z());
   }

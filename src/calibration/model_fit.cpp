@@ -14,14 +14,14 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kDetectedSigma_px = 0.15;  // of corners as they are detected
-constexpr double kRefinedSigma_px = 0.01;   // least, whatever the grey values say
-constexpr double kOutlier = 5;              // standard deviations
-constexpr double kLeastOutlier_px = 0.1;    // nothing is left out for less
-constexpr double kOutlierView = 3;          // times the median view's error
-constexpr double kSignificant = 4;          // standard deviations of a coefficient
-constexpr std::size_t kFewestCorners = 6;   // of a view
-constexpr int kRefinements = 2;
+constexpr double detected_sigma_px = 0.15;  // of corners as they are detected
+constexpr double refined_sigma_px = 0.01;   // least, whatever the grey values say
+constexpr double outlier = 5;               // standard deviations
+constexpr double least_outlier_px = 0.1;    // nothing is left out for less
+constexpr double outlier_view = 3;          // times the median view's error
+constexpr double significant = 4;           // standard deviations of a coefficient
+constexpr std::size_t fewest_corners = 6;   // of a view
+constexpr int refinements = 2;
 
 std::string errorText(double value) { return formatted("%.2f px", value); }
 
@@ -45,8 +45,8 @@ double varianceFactor(const Camera& camera, const std::vector<ImagedView>& views
       squares.push_back(std::pow(whitenedError(camera, view.fitted, corner), 2));
     }
   }
-  constexpr double kMedianOfTwo = 1.386;  // of the chi-squared distribution with two degrees of freedom
-  return std::max(medianOr(0.0, squares) / kMedianOfTwo, 1e-6);
+  constexpr double median_of_two = 1.386;  // of the chi-squared distribution with two degrees of freedom
+  return std::max(medianOr(0.0, squares) / median_of_two, 1e-6);
 }
 
 // Of the corners' distances [px]: single bad ones do not make a bad view.
@@ -62,7 +62,7 @@ void dropOutlierViews(const Camera& camera, ModelFit& fit) {
   std::vector<double> errors;
   for (const ImagedView& view : fit.views) errors.push_back(medianError(camera, view.fitted));
   const double usual = medianOr(0.0, errors);
-  const double limit = std::max(kOutlierView * usual, 0.3);
+  const double limit = std::max(outlier_view * usual, 0.3);
   std::vector<ImagedView> kept;
   for (std::size_t i = 0; i < fit.views.size(); ++i) {
     if (errors[i] <= limit) {
@@ -77,13 +77,13 @@ void dropOutlierViews(const Camera& camera, ModelFit& fit) {
 
 // Returns how many went.
 int dropOutlierCorners(const Camera& camera, std::vector<ImagedView>& views) {
-  const double limit = kOutlier * std::sqrt(varianceFactor(camera, views));
+  const double limit = outlier * std::sqrt(varianceFactor(camera, views));
   int dropped = 0;
   for (ImagedView& view : views) {
     std::vector<MeasuredCorner> kept;
     for (const MeasuredCorner& corner : view.fitted.corners) {
       const double error_px = cornerError(camera, view.fitted.camera_T_board, corner).norm();
-      if (error_px < kLeastOutlier_px || whitenedError(camera, view.fitted, corner) <= limit) {
+      if (error_px < least_outlier_px || whitenedError(camera, view.fitted, corner) <= limit) {
         kept.push_back(corner);
       } else {
         ++dropped;
@@ -97,7 +97,7 @@ int dropOutlierCorners(const Camera& camera, std::vector<ImagedView>& views) {
 void dropPoorViews(ModelFit& fit) {
   std::vector<ImagedView> kept;
   for (const ImagedView& view : fit.views) {
-    if (view.fitted.corners.size() >= kFewestCorners) {
+    if (view.fitted.corners.size() >= fewest_corners) {
       kept.push_back(view);
     } else {
       fit.remarks.push_back("frame " + std::to_string(view.frame) +
@@ -111,12 +111,12 @@ void dropPoorViews(ModelFit& fit) {
 // or not well.
 std::vector<MeasuredCorner> predictedCorners(const Camera& camera, const Pose& camera_T_board,
                                              const std::vector<Eigen::Vector2d>& places) {
-  constexpr double kBorder_px = 3;
+  constexpr double border_px = 3;
   std::vector<MeasuredCorner> predicted;
   for (std::size_t i = 0; i < places.size(); ++i) {
     MeasuredCorner corner{static_cast<int>(i), places[i], {0, 0}};
     corner.pixel = cornerError(camera, camera_T_board, corner);
-    if (insideImage(camera, corner.pixel, kBorder_px)) predicted.push_back(corner);
+    if (insideImage(camera, corner.pixel, border_px)) predicted.push_back(corner);
   }
   return predicted;
 }
@@ -135,7 +135,7 @@ int refineCorners(const Camera& camera, const Board& board, std::vector<ImagedVi
         continue;
       }
       const Eigen::Matrix2d covariance =
-          found->covariance + kRefinedSigma_px * kRefinedSigma_px * Eigen::Matrix2d::Identity();
+          found->covariance + refined_sigma_px * refined_sigma_px * Eigen::Matrix2d::Identity();
       corner.pixel = found->pixel;
       corner.whitening = Eigen::Matrix2d(covariance.llt().matrixL()).inverse();
       refined.push_back(corner);
@@ -167,7 +167,7 @@ void addSignificantTerms(ModelFit& fit) {
     tried.covariance = covarianceOf(tried, result);
     const auto i = static_cast<Eigen::Index>(term);
     const double sigma = std::sqrt(tried.covariance(i, i));
-    if (!(std::abs(tried.camera.distortion[term - 4]) > kSignificant * sigma)) return;
+    if (!(std::abs(tried.camera.distortion[term - 4]) > significant * sigma)) return;
     fit = std::move(tried);
   }
 }
@@ -185,7 +185,7 @@ std::optional<ModelFit> fitModel(CameraModel model, cv::Size size, std::vector<I
   fit.views = std::move(views);
   for (ImagedView& view : fit.views) {
     for (MeasuredCorner& corner : view.fitted.corners) {
-      corner.whitening = Eigen::Matrix2d::Identity() / kDetectedSigma_px;
+      corner.whitening = Eigen::Matrix2d::Identity() / detected_sigma_px;
     }
   }
   std::vector<FittedView> fitted = fittedViews(fit.views);
@@ -199,7 +199,7 @@ std::optional<ModelFit> fitModel(CameraModel model, cv::Size size, std::vector<I
   fitAll(fit.camera, fit.views, fit.options);
 
   int unlike = 0, outliers = 0;
-  for (int i = 0; i < kRefinements; ++i) {
+  for (int i = 0; i < refinements; ++i) {
     unlike = refineCorners(fit.camera, board, fit.views);
     dropPoorViews(fit);
     if (fit.views.size() < 3) return std::nullopt;

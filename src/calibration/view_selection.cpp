@@ -13,10 +13,10 @@ namespace edgeslam {
 namespace {
 
 // Views differ where one of these does by so much.
-constexpr double kNewPlace = 0.08;     // of the image's width or height
-constexpr double kNewSize = 0.15;      // relative
-constexpr double kNewTilt_rad = 0.14;  // 8 degrees
-constexpr double kNewRoll_rad = 0.35;  // 20 degrees
+constexpr double new_place = 0.08;     // of the image's width or height
+constexpr double new_size = 0.15;      // relative
+constexpr double new_tilt_rad = 0.14;  // 8 degrees
+constexpr double new_roll_rad = 0.35;  // 20 degrees
 
 double angleBetween(double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); }
 
@@ -67,10 +67,10 @@ ViewLook lookOf(const BoardSighting& sighting, const Board& board, cv::Size size
 bool ViewSelection::isNew(const ViewLook& look) const {
   return std::none_of(views_.begin(), views_.end(), [&](const BoardView& view) {
     const ViewLook& other = view.look;
-    return (look.centre - other.centre).lpNorm<Eigen::Infinity>() < kNewPlace &&
-           std::abs(std::log(look.size / other.size)) < kNewSize &&
-           (look.tilt_rad - other.tilt_rad).lpNorm<Eigen::Infinity>() < kNewTilt_rad &&
-           angleBetween(look.roll_rad, other.roll_rad) < kNewRoll_rad;
+    return (look.centre - other.centre).lpNorm<Eigen::Infinity>() < new_place &&
+           std::abs(std::log(look.size / other.size)) < new_size &&
+           (look.tilt_rad - other.tilt_rad).lpNorm<Eigen::Infinity>() < new_tilt_rad &&
+           angleBetween(look.roll_rad, other.roll_rad) < new_roll_rad;
   });
 }
 

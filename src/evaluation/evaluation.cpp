@@ -15,10 +15,10 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kLargestInterval_s = 1e9;
+constexpr double largest_interval_s = 1e9;
 
 std::int64_t toNanoseconds(double seconds, const char* name) {
-  if (!(seconds >= 0 && seconds <= kLargestInterval_s)) {
+  if (!(seconds >= 0 && seconds <= largest_interval_s)) {
     throw InputError(std::string("the ") + name + " must be 0 to 1e9 seconds, it is " + std::to_string(seconds));
   }
   return std::llround(1e9 * seconds);

@@ -12,15 +12,15 @@
 namespace edgeslam {
 namespace {
 
-constexpr const char* kBlanks = " \t\r\n\v\f";
+constexpr const char* blanks = " \t\r\n\v\f";
 
 // [ns], 126 years: the difference of two time stamps still fits into 64 bits.
-constexpr std::int64_t kLargestTime = 4'000'000'000'000'000'000;
+constexpr std::int64_t largest_time = 4'000'000'000'000'000'000;
 
 std::string_view trim(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
+  const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -73,10 +73,10 @@ std::optional<std::int64_t> roundToInteger(const Decimal& decimal) {
   std::int64_t value = 0;
   for (const char c : digits) {
     const std::int64_t digit = c - '0';
-    if (value > (kLargestTime - digit) / 10) return std::nullopt;
+    if (value > (largest_time - digit) / 10) return std::nullopt;
     value = value * 10 + digit;
   }
-  if (round_up && value == kLargestTime) return std::nullopt;
+  if (round_up && value == largest_time) return std::nullopt;
   if (round_up) ++value;
   return decimal.negative ? -value : value;
 }
@@ -101,13 +101,13 @@ std::vector<TextLine> readTextLines(const std::string& path) {
 }
 
 std::vector<std::string_view> splitColumns(std::string_view text) {
-  constexpr const char* kSeparators = " \t\r,";
+  constexpr const char* separators = " \t\r,";
   std::vector<std::string_view> columns;
-  std::size_t begin = text.find_first_not_of(kSeparators);
+  std::size_t begin = text.find_first_not_of(separators);
   while (begin != std::string_view::npos) {
-    const std::size_t end = text.find_first_of(kSeparators, begin);
+    const std::size_t end = text.find_first_of(separators, begin);
     columns.push_back(text.substr(begin, end - begin));
-    begin = text.find_first_not_of(kSeparators, end);
+    begin = text.find_first_not_of(separators, end);
   }
   return columns;
 }
@@ -135,7 +135,7 @@ std::optional<std::int64_t> parseNanoseconds(std::string_view text) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (value > kLargestTime || value < -kLargestTime) return std::nullopt;
+  if (value > largest_time || value < -largest_time) return std::nullopt;
   return value;
 }
 

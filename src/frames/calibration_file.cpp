@@ -255,10 +255,10 @@ Camera readCalibrationLists(const Section& section, const std::string& coefficie
 }  // namespace
 
 Camera readCalibration(const std::string& path) {
-  constexpr std::uintmax_t kLargestFile = 1 << 20;
+  constexpr std::uintmax_t largest_file = 1 << 20;
   std::error_code error_code;
   if (!std::filesystem::is_regular_file(path, error_code)) throw InputError(path + ": no such calibration file");
-  if (std::filesystem::file_size(path, error_code) > kLargestFile) {
+  if (std::filesystem::file_size(path, error_code) > largest_file) {
     throw InputError(path + ": too large for a calibration");
   }
   try {

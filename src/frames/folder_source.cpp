@@ -156,12 +156,12 @@ std::vector<StampedFile> imagesNamedByTime(const std::string& folder) {
 }
 
 bool isImageFileName(const std::string& name) {
-  constexpr std::array<const char*, 9> kExtensions{".png", ".jpg", ".jpeg", ".bmp", ".pgm",
-                                                   ".ppm", ".tif", ".tiff", ".webp"};
+  constexpr std::array<const char*, 9> extensions{".png", ".jpg", ".jpeg", ".bmp", ".pgm",
+                                                  ".ppm", ".tif", ".tiff", ".webp"};
   std::string extension = fs::path(name).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return name.front() != '.' && std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+  return name.front() != '.' && std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
 std::unique_ptr<FrameSource> makeFolderSource(std::string kind, std::vector<StampedFile> files,

@@ -52,13 +52,13 @@ std::string sizeText(cv::Size size) { return std::to_string(size.width) + " x " 
 }  // namespace
 
 DecodedImage readGreyImage(const std::string& path) {
-  constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 29;
+  constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 29;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) return {{}, path + ": no such file"};
   if (!std::filesystem::is_regular_file(status)) return {{}, path + ": is not a file"};
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size > kLargestFile) return {{}, path + ": too large for an image"};
+  if (error || size > largest_file) return {{}, path + ": too large for an image"};
   std::ifstream file(path, std::ios::binary);
   const Bytes bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (!file || bytes.size() != size) return {{}, path + ": cannot be read"};

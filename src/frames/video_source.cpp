@@ -198,12 +198,12 @@ class VideoSource : public FrameSource {
 }  // namespace
 
 bool isVideoFileName(const std::string& name) {
-  constexpr std::array<const char*, 12> kExtensions{".wmv", ".mpeg", ".mjpeg", ".mp4", ".mkv", ".avi",
-                                                    ".mov", ".webm", ".m4v",   ".ts",  ".mpg", ".h264"};
+  constexpr std::array<const char*, 12> extensions{".wmv", ".mpeg", ".mjpeg", ".mp4", ".mkv", ".avi",
+                                                   ".mov", ".webm", ".m4v",   ".ts",  ".mpg", ".h264"};
   std::string extension = std::filesystem::path(name).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return name.front() != '.' && std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+  return name.front() != '.' && std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
 std::unique_ptr<FrameSource> makeStampedVideoSource(const std::string& video_path, const std::string& times_path,

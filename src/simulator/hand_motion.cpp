@@ -11,21 +11,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kCorridorStep_s = 0.005;
-constexpr double kBrakingTime_s = 0.4;
-constexpr double kShakeRise_s = 0.15;
-constexpr double kTurn_rad = radians(40);
-constexpr double kPanelsPeriod_s = 26;
-constexpr double kRoomPeriod_s = 26;
+constexpr double pi = 3.14159265358979323846;
+constexpr double corridor_step_s = 0.005;
+constexpr double braking_time_s = 0.4;
+constexpr double shake_rise_s = 0.15;
+constexpr double turn_rad = radians(40);
+constexpr double panels_period_s = 26;
+constexpr double room_period_s = 26;
 
 // Corridor: a rounded rectangle in the middle of the corridors, begun in the middle of the side at y = 0,
 // counter-clockwise.
-constexpr double kTurnRadius_m = 0.6;
-constexpr double kCorridorSpeed_m_s = 1.0;
-constexpr double kTurnSpeed_m_s = 0.45;
-constexpr double kEasing_m = 0.35;  // way over which the heading follows a turn
-constexpr double kCorridorCameraHeight_m = 0.9;
+constexpr double turn_radius_m = 0.6;
+constexpr double corridor_speed_m_s = 1.0;
+constexpr double turn_speed_m_s = 0.45;
+constexpr double easing_m = 0.35;  // way over which the heading follows a turn
+constexpr double corridor_camera_height_m = 0.9;
 
 double smoothStep(double x) {
   const double c = std::clamp(x, 0.0, 1.0);
@@ -44,16 +44,16 @@ double motionTime(const CameraMotion& motion, double time_s) {
   for (const TimeSpan& span : motion.still) {
     // The clock loses `smoothStep` of each second while braking, all of it in the span, 1 - smoothStep when starting
     // again.
-    const double falling = (time_s - (span.begin_s - kBrakingTime_s)) / kBrakingTime_s;
-    const double rising = (time_s - span.end_s) / kBrakingTime_s;
-    result -= kBrakingTime_s * (smoothStepIntegral(falling) - smoothStepIntegral(rising));
+    const double falling = (time_s - (span.begin_s - braking_time_s)) / braking_time_s;
+    const double rising = (time_s - span.end_s) / braking_time_s;
+    result -= braking_time_s * (smoothStepIntegral(falling) - smoothStepIntegral(rising));
   }
   return result;
 }
 
 double sumOf(const std::vector<Sway>& sways, double time_s) {
   double sum = 0;
-  for (const Sway& s : sways) sum += s.amplitude * std::sin(2 * kPi * s.frequency_hz * time_s + s.phase);
+  for (const Sway& s : sways) sum += s.amplitude * std::sin(2 * pi * s.frequency_hz * time_s + s.phase);
   return sum;
 }
 
@@ -68,7 +68,7 @@ double turnAt(const CameraMotion& motion, double time_s) {
   double angle = 0;
   for (const TimeSpan& span : motion.turned) {
     const double half_s = (span.end_s - span.begin_s) / 2;
-    angle += kTurn_rad * smoothStep((time_s - span.begin_s) / half_s) * smoothStep((span.end_s - time_s) / half_s);
+    angle += turn_rad * smoothStep((time_s - span.begin_s) / half_s) * smoothStep((span.end_s - time_s) / half_s);
   }
   return angle;
 }
@@ -95,19 +95,19 @@ Pose roomPath(double phase) {
   // A walk round the room that looks across it.
   const Vector3d position(2.6 + 1.15 * std::cos(phase), 2.1 + 0.85 * std::sin(phase),
                           1.45 + 0.08 * std::sin(3 * phase));
-  const double yaw = phase + kPi + 0.45 * std::sin(2 * phase);
+  const double yaw = phase + pi + 0.45 * std::sin(2 * phase);
   return lookAlong(position, {std::cos(yaw), std::sin(yaw), -0.14 + 0.08 * std::sin(2 * phase + 1)});
 }
 
 struct CorridorPath {
   double side_x, side_y;  // straight parts [m]
-  double corner = kTurnRadius_m * kPi / 2;
+  double corner = turn_radius_m * pi / 2;
   double lap() const { return 2 * (side_x + side_y) + 4 * corner; }
 };
 
 CorridorPath corridorPath() {
   const CorridorPlan plan;
-  return {plan.length - plan.corridor_width - 2 * kTurnRadius_m, plan.width - plan.corridor_width - 2 * kTurnRadius_m};
+  return {plan.length - plan.corridor_width - 2 * turn_radius_m, plan.width - plan.corridor_width - 2 * turn_radius_m};
 }
 
 struct PathPoint {
@@ -123,8 +123,8 @@ PathPoint corridorPoint(double way_m) {
   const double laps = std::floor(way_m / path.lap());
   double rest = way_m - laps * path.lap();
   // Half a side, then four times a turn and a side; the last side is the first one's other half.
-  Vector3d position(0.5 * plan.length, middle, kCorridorCameraHeight_m);
-  double heading = 2 * kPi * laps;
+  Vector3d position(0.5 * plan.length, middle, corridor_camera_height_m);
+  double heading = 2 * pi * laps;
   const std::array<double, 5> sides = {path.side_x / 2, path.side_y, path.side_x, path.side_y, path.side_x / 2};
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const Vector3d forward(std::cos(heading), std::sin(heading), 0), left(-forward.y(), forward.x(), 0);
@@ -137,20 +137,20 @@ PathPoint corridorPoint(double way_m) {
     position += sides[i] * forward;
     rest -= sides[i];
     if (rest <= path.corner) {
-      const double angle = rest / kTurnRadius_m;
-      return {position + kTurnRadius_m * (std::sin(angle) * forward + (1 - std::cos(angle)) * left), heading + angle,
+      const double angle = rest / turn_radius_m;
+      return {position + turn_radius_m * (std::sin(angle) * forward + (1 - std::cos(angle)) * left), heading + angle,
               0};
     }
-    position += kTurnRadius_m * (forward + left);
-    heading += kPi / 2;
+    position += turn_radius_m * (forward + left);
+    heading += pi / 2;
     rest -= path.corner;
   }
   return {position, heading, 0};
 }
 
 double corridorSpeed(double way_m) {
-  return kTurnSpeed_m_s +
-         (kCorridorSpeed_m_s - kTurnSpeed_m_s) * smoothStep((corridorPoint(way_m).way_to_turn_m - 0.2) / 0.8);
+  return turn_speed_m_s +
+         (corridor_speed_m_s - turn_speed_m_s) * smoothStep((corridorPoint(way_m).way_to_turn_m - 0.2) / 0.8);
 }
 
 Pose corridorPose(double way_m) {
@@ -158,13 +158,13 @@ Pose corridorPose(double way_m) {
   constexpr int samples = 21;
   double heading = 0;
   for (int i = 0; i < samples; ++i) {
-    heading += corridorPoint(way_m + kEasing_m * (2.0 * i / (samples - 1) - 1)).heading / samples;
+    heading += corridorPoint(way_m + easing_m * (2.0 * i / (samples - 1) - 1)).heading / samples;
   }
   return lookAlong(corridorPoint(way_m).position, {std::cos(heading), std::sin(heading), -0.03});
 }
 
 double wayGone(const std::vector<double>& distances, double time_s) {
-  const double position = std::clamp(time_s / kCorridorStep_s, 0.0, static_cast<double>(distances.size() - 2));
+  const double position = std::clamp(time_s / corridor_step_s, 0.0, static_cast<double>(distances.size() - 2));
   const std::size_t i = static_cast<std::size_t>(position);
   return distances[i] + (position - static_cast<double>(i)) * (distances[i + 1] - distances[i]);
 }
@@ -179,7 +179,7 @@ std::vector<Sway> makeSways(int count, double slowest_hz, double fastest_hz, dou
     const double share = (i + 0.8 * uniform(generator)) / count;
     const double frequency = slowest_hz * std::pow(fastest_hz / slowest_hz, share);
     // The slower, the wider, so that each contributes alike to the speed.
-    sways.push_back({amplitude * slowest_hz / frequency / std::sqrt(count), frequency, 2 * kPi * uniform(generator)});
+    sways.push_back({amplitude * slowest_hz / frequency / std::sqrt(count), frequency, 2 * pi * uniform(generator)});
   }
   return sways;
 }
@@ -206,11 +206,11 @@ CameraMotion makeCameraMotion(SceneKind scene, double speed, std::uint64_t seed,
     case SceneKind::corridor:
     case SceneKind::corridor_tiled: {
       const CorridorPath path = corridorPath();
-      const double until_s = std::max(duration_s * speed + 1, path.lap() / kTurnSpeed_m_s);
+      const double until_s = std::max(duration_s * speed + 1, path.lap() / turn_speed_m_s);
       double way = 0;
-      for (double t = 0; t < until_s + 2 * kCorridorStep_s; t += kCorridorStep_s) {
+      for (double t = 0; t < until_s + 2 * corridor_step_s; t += corridor_step_s) {
         motion.corridor_distances_m.push_back(way);
-        way += kCorridorStep_s * corridorSpeed(way);
+        way += corridor_step_s * corridorSpeed(way);
       }
       break;
     }
@@ -226,20 +226,20 @@ Pose poseAt(const CameraMotion& motion, double time_s) {
   Pose pose;
   switch (motion.scene) {
     case SceneKind::room:
-      pose = roomPath(motion.path_phase + 2 * kPi * path_time / kRoomPeriod_s);
+      pose = roomPath(motion.path_phase + 2 * pi * path_time / room_period_s);
       break;
     case SceneKind::corridor:
     case SceneKind::corridor_tiled:
       pose = corridorPose(wayGone(motion.corridor_distances_m, path_time));
       break;
     default:
-      pose = panelsPath(motion.path_phase + 2 * kPi * path_time / kPanelsPeriod_s,
+      pose = panelsPath(motion.path_phase + 2 * pi * path_time / panels_period_s,
                         motion.scene == SceneKind::panels_textured);
   }
   Vector6d sway = swayAt(motion.tremor, time);
   for (const TimeSpan& span : motion.shaken) {
     const double strength =
-        smoothStep((time_s - span.begin_s) / kShakeRise_s) * smoothStep((span.end_s - time_s) / kShakeRise_s);
+        smoothStep((time_s - span.begin_s) / shake_rise_s) * smoothStep((span.end_s - time_s) / shake_rise_s);
     if (strength > 0) sway += strength * swayAt(motion.shake, time_s);
   }
   pose = retract(pose, sway);
@@ -251,15 +251,15 @@ Pose poseAt(const CameraMotion& motion, double time_s) {
 double lapTime(const CameraMotion& motion) {
   switch (motion.scene) {
     case SceneKind::room:
-      return kRoomPeriod_s / motion.speed;
+      return room_period_s / motion.speed;
     case SceneKind::corridor:
     case SceneKind::corridor_tiled: {
       const auto& ways = motion.corridor_distances_m;
       const auto end = std::lower_bound(ways.begin(), ways.end(), corridorPath().lap());
-      return kCorridorStep_s * static_cast<double>(end - ways.begin()) / motion.speed;
+      return corridor_step_s * static_cast<double>(end - ways.begin()) / motion.speed;
     }
     default:
-      return kPanelsPeriod_s / motion.speed;
+      return panels_period_s / motion.speed;
   }
 }
 

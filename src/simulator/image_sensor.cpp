@@ -7,9 +7,9 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kTargetMean = 0.49;  // of full scale
-constexpr double kExposureLag_s = 0.8;
-constexpr double kDarkestMean = 0.25;  // of the first frame's: the gain does not follow the light below this
+constexpr double target_mean = 0.49;  // of full scale
+constexpr double exposure_lag_s = 0.8;
+constexpr double darkest_mean = 0.25;  // of the first frame's: the gain does not follow the light below this
 
 // Standard normal numbers to a good approximation: the sum of four 16-bit uniform numbers, scaled. Integers up to the
 // last step, so the same on every machine.
@@ -59,12 +59,12 @@ cv::Mat senseImage(const cv::Mat& radiance, double gain, const SensorOptions& op
 std::vector<double> automaticGains(const std::vector<double>& mean_radiances, double interval_s) {
   std::vector<double> gains;
   if (mean_radiances.empty()) return gains;
-  const double share = 1 - std::exp(-interval_s / kExposureLag_s);
+  const double share = 1 - std::exp(-interval_s / exposure_lag_s);
   const double first = std::max(1e-6, mean_radiances.front());
   double followed = first;
   for (const double mean : mean_radiances) {
-    followed += share * (std::max(mean, kDarkestMean * first) - followed);
-    gains.push_back(kTargetMean / followed);
+    followed += share * (std::max(mean, darkest_mean * first) - followed);
+    gains.push_back(target_mean / followed);
   }
   return gains;
 }

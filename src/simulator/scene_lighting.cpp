@@ -10,11 +10,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNodeSpacing_m = 0.08;
-constexpr int kMostNodes = 96;
-constexpr double kOcclusionReach_m = 0.8;  // a surface this far away takes no even light any more
-constexpr double kLampReach_m = 8.0;
-constexpr int kOcclusionRays = 24;
+constexpr double node_spacing_m = 0.08;
+constexpr int most_nodes = 96;
+constexpr double occlusion_reach_m = 0.8;  // a surface this far away takes no even light any more
+constexpr double lamp_reach_m = 8.0;
+constexpr int occlusion_rays = 24;
 constexpr double kEnclosed = 0.08;  // a node that gets less of the even light lies inside something
 
 struct Occluder {
@@ -43,10 +43,10 @@ double hitDistance(const Occluder& occluder, const Vector3d& origin, const Vecto
 }
 
 // Directions with a density proportional to the cosine to z, on a spiral.
-std::array<Vector3d, kOcclusionRays> cosineDirections() {
-  std::array<Vector3d, kOcclusionRays> directions;
-  for (int i = 0; i < kOcclusionRays; ++i) {
-    const double share = (i + 0.5) / kOcclusionRays, angle = i * 2.399963229728653;  // golden angle
+std::array<Vector3d, occlusion_rays> cosineDirections() {
+  std::array<Vector3d, occlusion_rays> directions;
+  for (int i = 0; i < occlusion_rays; ++i) {
+    const double share = (i + 0.5) / occlusion_rays, angle = i * 2.399963229728653;  // golden angle
     directions[static_cast<std::size_t>(i)] =
         Vector3d(std::sqrt(share) * std::cos(angle), std::sqrt(share) * std::sin(angle), std::sqrt(1 - share));
   }
@@ -55,14 +55,14 @@ std::array<Vector3d, kOcclusionRays> cosineDirections() {
 
 // Share of the even light that reaches the point.
 double openness(const std::vector<Occluder>& occluders, const Vector3d& point,
-                const std::array<Vector3d, kOcclusionRays>& directions) {
+                const std::array<Vector3d, occlusion_rays>& directions) {
   double open = 0;
   for (const Vector3d& direction : directions) {
-    double distance = kOcclusionReach_m;
+    double distance = occlusion_reach_m;
     for (const Occluder& occluder : occluders) distance = hitDistance(occluder, point, direction, distance);
-    open += distance / kOcclusionReach_m;
+    open += distance / occlusion_reach_m;
   }
-  return open / kOcclusionRays;
+  return open / occlusion_rays;
 }
 
 // Irradiance of the lamps.
@@ -73,12 +73,12 @@ double lampLight(const Scene& scene, const std::vector<Occluder>& occluders, con
     const Vector3d offset = light.position - point;
     const double distance = offset.norm(), cosine = normal.dot(offset) / distance;
     const double lamp_cosine = -light.direction.dot(offset) / distance;
-    if (cosine <= 0 || lamp_cosine <= 0 || distance > kLampReach_m) continue;
+    if (cosine <= 0 || lamp_cosine <= 0 || distance > lamp_reach_m) continue;
     const bool lit = std::all_of(occluders.begin(), occluders.end(), [&](const Occluder& occluder) {
       return hitDistance(occluder, point, offset / distance, distance) >= distance;
     });
     // The fade keeps the light continuous at the lamp's reach.
-    const double fade = 1 - std::pow(distance / kLampReach_m, 2);
+    const double fade = 1 - std::pow(distance / lamp_reach_m, 2);
     if (lit) sum += light.intensity * lamp_cosine * cosine * fade / (distance * distance);
   }
   return sum;
@@ -116,13 +116,13 @@ std::vector<cv::Mat> computeLight(const Scene& scene) {
       continue;
     }
     const Vector3d s_axis = r.side_s.normalized(), t_axis = r.side_t.normalized(), normal = s_axis.cross(t_axis);
-    std::array<Vector3d, kOcclusionRays> directions;
+    std::array<Vector3d, occlusion_rays> directions;
     for (std::size_t i = 0; i < directions.size(); ++i) {
       const Vector3d& d = local_directions[i];
       directions[i] = d.x() * s_axis + d.y() * t_axis + d.z() * normal;
     }
     const auto nodes = [](double length) {
-      return std::clamp(static_cast<int>(std::ceil(length / kNodeSpacing_m)) + 1, 2, kMostNodes);
+      return std::clamp(static_cast<int>(std::ceil(length / node_spacing_m)) + 1, 2, most_nodes);
     };
     cv::Mat map(nodes(r.side_t.norm()), nodes(r.side_s.norm()), CV_32F);
     cv::Mat enclosed(map.size(), CV_8U);

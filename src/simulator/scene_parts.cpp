@@ -72,13 +72,14 @@ void addLedge(Scene& scene, const SceneWall& wall, double left, double bottom, d
 
 void addDoor(Scene& scene, const SceneWall& wall, double left, double leaf_albedo, int texture) {
   constexpr double height = 2.02, frame_depth = 0.025, frame_albedo = 0.42;
-  addPicture(scene, wall, left, 0, kDoorLeafWidth, height, leaf_albedo, texture);
-  addLedge(scene, wall, left - kDoorFrameWidth, 0, kDoorFrameWidth, height + kDoorFrameWidth, frame_depth,
+  addPicture(scene, wall, left, 0, door_leaf_width, height, leaf_albedo, texture);
+  addLedge(scene, wall, left - door_frame_width, 0, door_frame_width, height + door_frame_width, frame_depth,
            frame_albedo);
-  addLedge(scene, wall, left + kDoorLeafWidth, 0, kDoorFrameWidth, height + kDoorFrameWidth, frame_depth, frame_albedo);
-  addLedge(scene, wall, left, height, kDoorLeafWidth, kDoorFrameWidth, frame_depth, frame_albedo);
-  addLedge(scene, wall, left + kDoorLeafWidth - 0.1, 0.98, 0.04, 0.2, 0.01, 0.75);
-  addLedge(scene, wall, left + kDoorLeafWidth - 0.2, 1.05, 0.13, 0.02, 0.05, 0.8);
+  addLedge(scene, wall, left + door_leaf_width, 0, door_frame_width, height + door_frame_width, frame_depth,
+           frame_albedo);
+  addLedge(scene, wall, left, height, door_leaf_width, door_frame_width, frame_depth, frame_albedo);
+  addLedge(scene, wall, left + door_leaf_width - 0.1, 0.98, 0.04, 0.2, 0.01, 0.75);
+  addLedge(scene, wall, left + door_leaf_width - 0.2, 1.05, 0.13, 0.02, 0.05, 0.8);
 }
 
 void addWindow(Scene& scene, const SceneWall& wall, double left, double bottom, double width, double height,
@@ -97,8 +98,8 @@ void addSkirting(Scene& scene, const SceneWall& wall, const std::vector<double>&
   constexpr double height = 0.1, depth = 0.015;
   double from = 0;
   for (const double door : doors) {
-    addLedge(scene, wall, from, 0, door - kDoorFrameWidth - from, height, depth, albedo);
-    from = door + kDoorLeafWidth + kDoorFrameWidth;
+    addLedge(scene, wall, from, 0, door - door_frame_width - from, height, depth, albedo);
+    from = door + door_leaf_width + door_frame_width;
   }
   addLedge(scene, wall, from, 0, wall.length - from, height, depth, albedo);
 }

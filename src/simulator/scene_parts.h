@@ -39,8 +39,8 @@ void addLedge(Scene& scene, const SceneWall& wall, double left, double bottom, d
 
 // Frame, leaf and handle of a door whose leaf's left side is at `left`. `texture` of the leaf, or -1.
 void addDoor(Scene& scene, const SceneWall& wall, double left, double leaf_albedo, int texture);
-constexpr double kDoorLeafWidth = 0.9;    // [m]
-constexpr double kDoorFrameWidth = 0.07;  // [m]
+constexpr double door_leaf_width = 0.9;    // [m]
+constexpr double door_frame_width = 0.07;  // [m]
 
 // Frame, mullion, sill and bright pane.
 void addWindow(Scene& scene, const SceneWall& wall, double left, double bottom, double width, double height,

@@ -11,7 +11,7 @@ namespace edgeslam {
 namespace {
 
 constexpr int kTile = 16;  // side of a tile [px]
-constexpr std::size_t kTileArea = kTile * kTile;
+constexpr std::size_t tile_area = kTile * kTile;
 constexpr int kBlock = 4 * kTile;  // rectangles are first chosen for blocks of tiles of this side [px]
 constexpr int kRaysPerPose = 4;    // rays a pixel and pose where a tile shows more than one surface
 
@@ -72,9 +72,9 @@ struct Tile {
   std::size_t count = 0;  // of pixels
   RayBox box;
   float pixel_u = 0;  // size of a pixel at unit depth
-  std::array<float, kTileArea> centre_u, centre_v, u_by_x, u_by_y, v_by_x, v_by_y;
-  std::array<float, kTileArea> u, v;
-  std::array<float, kTileArea> sum;
+  std::array<float, tile_area> centre_u, centre_v, u_by_x, u_by_y, v_by_x, v_by_y;
+  std::array<float, tile_area> u, v;
+  std::array<float, tile_area> sum;
 };
 
 void loadTile(Tile& tile, const RayTable& rays, const PixelArea& area) {
@@ -108,8 +108,8 @@ void addSurface(Tile& tile, const SeenRectangle& seen, const Surface& surface) {
 }
 
 void addNearest(Tile& tile, const SeenPointers& seen, const std::vector<Surface>& surfaces) {
-  std::array<float, kTileArea> nearest;
-  std::array<int, kTileArea> winner;
+  std::array<float, tile_area> nearest;
+  std::array<int, tile_area> winner;
   nearest.fill(0);
   winner.fill(-1);
   for (std::size_t k = 0; k < seen.size(); ++k) {

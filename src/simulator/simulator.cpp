@@ -12,12 +12,12 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::int64_t kFirstTime_ns = 1'000'000'000'000;
-constexpr int kDefaultFrames = 300;
-constexpr double kCoveredLight = 0.012;  // share of the light that a hand on the lens lets through
-constexpr double kBlurStep_px = 1.2;     // an edge moves at most about so far between two poses of an exposure
-constexpr int kFewestPoses = 5;
-constexpr int kMostPoses = 41;
+constexpr std::int64_t first_time_ns = 1'000'000'000'000;
+constexpr int default_frames = 300;
+constexpr double covered_light = 0.012;  // share of the light that a hand on the lens lets through
+constexpr double blur_step_px = 1.2;     // an edge moves at most about so far between two poses of an exposure
+constexpr int fewest_poses = 5;
+constexpr int most_poses = 41;
 
 void checkRange(const char* option, double value, double least, double most) {
   if (value >= least && value <= most) return;
@@ -93,8 +93,8 @@ std::vector<Pose> exposurePoses(const SimulatedSequence& sequence, double time_s
   // As if everything were 1 m away.
   const double blur_px = meanFocalLength(sequence.camera) *
                          (rotationAngle(begin.rotation, end.rotation) + (end.translation - begin.translation).norm());
-  const int half = static_cast<int>(std::ceil(0.5 * blur_px / kBlurStep_px));
-  const int count = std::clamp(2 * half + 1, kFewestPoses, kMostPoses);
+  const int half = static_cast<int>(std::ceil(0.5 * blur_px / blur_step_px));
+  const int count = std::clamp(2 * half + 1, fewest_poses, most_poses);
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) {
     poses.push_back(poseAt(sequence.motion, time_s + exposure_s * ((i + 0.5) / count - 0.5)));
@@ -116,7 +116,7 @@ FrameRange parseFrameRange(const std::string& text) {
 }
 
 std::int64_t SimulatedSequence::time(int index) const {
-  return kFirstTime_ns + static_cast<std::int64_t>(std::llround(1e9 * frameTime(options, index)));
+  return first_time_ns + static_cast<std::int64_t>(std::llround(1e9 * frameTime(options, index)));
 }
 
 Pose SimulatedSequence::groundTruth(int index) const { return poseAt(motion, frameTime(options, index)); }
@@ -125,7 +125,7 @@ SimulatedFrame SimulatedSequence::frame(int index) const {
   if (index < 0 || index >= size()) throw std::out_of_range("SimulatedSequence::frame");
   const double time_s = frameTime(options, index);
   const cv::Mat radiance = renderRadiance(scene, rays, exposurePoses(*this, time_s));
-  const double light = isIn(options.covered, index) ? kCoveredLight : 1;
+  const double light = isIn(options.covered, index) ? covered_light : 1;
   SensorOptions sensor;
   sensor.noise = options.noise;
   const std::uint64_t noise_seed = options.seed * 0x9E3779B97F4A7C15U + static_cast<std::uint64_t>(index) + 1;
@@ -139,7 +139,7 @@ SimulatedSequence makeSequence(const SimulationOptions& options) {
   sequence.options = options;
   int& frames = sequence.options.frames;
   if (frames == 0) {
-    frames = kDefaultFrames;
+    frames = default_frames;
     if (isCorridor(options.scene)) {
       const double lap_s = lapTime(makeCameraMotion(options.scene, options.speed, options.seed, 0));
       frames = static_cast<int>(std::ceil((lap_s + 1.5 / options.speed) * options.fps));
@@ -164,7 +164,7 @@ SimulatedSequence makeSequence(const SimulationOptions& options) {
   std::vector<double> means;
   for (int i = 0; i < frames; ++i) {
     const double mean = meterRadiance(sequence.scene, sequence.rays, sequence.groundTruth(i));
-    means.push_back(isIn(options.covered, i) ? kCoveredLight * mean : mean);
+    means.push_back(isIn(options.covered, i) ? covered_light * mean : mean);
   }
   sequence.gains = automaticGains(means, 1 / options.fps);
   return sequence;

@@ -77,7 +77,7 @@ void add(const std::string& group, const test::BundleScene& scene, const BundleO
         BundleProblem again = problem;
         benchmark::DoNotOptimize(variant.adjust(scene.camera, again, options));
       }
-    })->Unit(benchmark::kMillisecond);
+    })->Unit(benchmark::millisecond);
   }
 }
 

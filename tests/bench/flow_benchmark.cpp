@@ -30,8 +30,8 @@ const cv::Size kSize(640, 480);
 constexpr double kWrong = 1;  // a point that is farther off than this was not followed but lost [px]
 // Of a prediction in x and in y [px]: of the frames of real sequences half are better than 0.15 to 0.4 px, 9 of 10 than
 // 0.4 to 1.2 px.
-constexpr double kPredictionError = 0.4;
-constexpr double kHardlyDamped = 0.03;  // [grey^2/px^2]
+constexpr double prediction_error = 0.4;
+constexpr double hardly_damped = 0.03;  // [grey^2/px^2]
 
 struct FlowTask {
   std::string name;
@@ -47,7 +47,7 @@ struct FlowTask {
 // Where each point was found there; NaN where it was not.
 using Found = std::vector<Eigen::Vector2d>;
 
-const Eigen::Vector2d kNotFound = Eigen::Vector2d::Constant(std::nan(""));
+const Eigen::Vector2d not_found = Eigen::Vector2d::Constant(std::nan(""));
 
 void buildOpenCvPyramid(const cv::Mat& image, const FlowOptions& options, std::vector<cv::Mat>& pyramid) {
   cv::buildOpticalFlowPyramid(image, pyramid, {options.window, options.window}, options.levels - 1);
@@ -56,7 +56,7 @@ void buildOpenCvPyramid(const cv::Mat& image, const FlowOptions& options, std::v
 // What tracking knows beforehand: where each point is, about.
 std::vector<Eigen::Vector2f> predict(const std::vector<ChosenPoint>& points, const KnownWarp& warp) {
   std::mt19937 random(11);
-  std::normal_distribution<double> error(0, kPredictionError);
+  std::normal_distribution<double> error(0, prediction_error);
   std::vector<Eigen::Vector2f> predictions;
   for (const ChosenPoint& point : points) {
     const Eigen::Vector2d there = warp.apply(point.pixel.cast<double>());
@@ -80,7 +80,7 @@ std::shared_ptr<FlowTask> makeTask(const std::string& name, Picture picture, con
     task->starts = predict(task->points, warp);
   } else {
     for (const ChosenPoint& point : task->points) task->starts.push_back(point.pixel);
-    task->options.damping = kHardlyDamped;  // towards where the points are known not to be
+    task->options.damping = hardly_damped;  // towards where the points are known not to be
   }
   task->from = buildPyramid(task->pictures.first, task->options.levels);
   task->to = buildPyramid(task->pictures.second, task->options.levels);
@@ -97,7 +97,7 @@ Found followOurs(const FlowTask& task) {
     const FlowMatch match = followPoint(task.from, task.to, point.pixel, task.starts[i], task.options);
     const bool returns = match.found && backwardError(task.from, task.to, point.pixel, match.pixel, point.normal,
                                                       task.options) <= task.options.forward_backward;
-    found.push_back(returns ? Eigen::Vector2d(match.pixel.cast<double>()) : kNotFound);
+    found.push_back(returns ? Eigen::Vector2d(match.pixel.cast<double>()) : not_found);
   }
   return found;
 }
@@ -120,7 +120,7 @@ Found followOpenCv(const FlowTask& task, const cv::TermCriteria& criteria) {
     const Eigen::Vector2f off(back[i].x - start[i].x, back[i].y - start[i].y);
     const bool returns = status[i] && status_back[i] &&
                          std::abs(task.points[i].normal.dot(off)) <= static_cast<float>(task.options.forward_backward);
-    found.push_back(returns ? Eigen::Vector2d(there[i].x, there[i].y) : kNotFound);
+    found.push_back(returns ? Eigen::Vector2d(there[i].x, there[i].y) : not_found);
   }
   return found;
 }

@@ -15,7 +15,7 @@ void addTimed(const std::string& name, const std::function<void()>& work) {
       work();
       benchmark::ClobberMemory();
     }
-  })->Unit(benchmark::kMillisecond);
+  })->Unit(benchmark::millisecond);
 }
 
 void addCopy(const std::string& kernel, std::size_t touched_bytes) {

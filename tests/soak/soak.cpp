@@ -15,6 +15,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "map/saved_map.h"
+#include "recording/open_frame_source.h"
 #include "soak/soak_minutes.h"
 #include "soak/soaked_run.h"
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "map/saved_map.h"
+#include "recording/open_frame_source.h"
 #include "recording/recording_source.h"
 #include "system/faults/faulty_daemon.h"
 

@@ -77,8 +77,8 @@ TEST(BundleAdjustment, NoiseGivesTheErrorThatItShould) {
   Random random(4);
   double cost_ratio = 0, depth_nees = 0;
   int depths = 0;
-  constexpr int kRuns = 10;
-  for (int run = 0; run < kRuns; ++run) {
+  constexpr int runs = 10;
+  for (int run = 0; run < runs; ++run) {
     BundleSceneOptions options;
     options.noise = 1;
     const BundleScene scene = makeBundleScene(random, options);
@@ -89,7 +89,7 @@ TEST(BundleAdjustment, NoiseGivesTheErrorThatItShould) {
     ASSERT_TRUE(result.usable);
     // Half a degree of freedom each: residuals less unknowns.
     const double freedom = 2.0 * static_cast<double>(problem.observations.size()) - 4 * 6 - 150;
-    cost_ratio += result.final_cost / (0.5 * freedom) / kRuns;
+    cost_ratio += result.final_cost / (0.5 * freedom) / runs;
     EXPECT_LT(largestTranslationError(problem, scene.truth), 0.02);
     EXPECT_LT(largestRotationError(problem, scene.truth), 0.004);
     // Depths with exact poses: their deviation is the one given.

@@ -11,7 +11,7 @@
 namespace edgeslam::test {
 namespace {
 
-constexpr double kHuber = 2;
+constexpr double huber = 2;
 
 struct Linearized {
   BundleScene scene;
@@ -39,7 +39,7 @@ Linearized linearized(const BundleSceneOptions& options, double damping, std::ui
   for (const StructuredPoint& p : made.structure.points)
     made.state.inverse_depths.push_back(problem.points[static_cast<std::size_t>(p.index)].inverse_depth);
   made.linearization.origin = {0.3, -0.2, 0.5};
-  linearizeBundle(scene.camera, made.structure, made.state, kHuber, damping, made.linearization);
+  linearizeBundle(scene.camera, made.structure, made.state, huber, damping, made.linearization);
   return made;
 }
 
@@ -76,7 +76,7 @@ Eigen::VectorXd residualsAt(const Linearized& from, const BundleState& state) {
       const StructuredObservation& o = from.structure.observations[static_cast<std::size_t>(k)];
       Eigen::Vector2d before = Eigen::Vector2d::Zero(), now = before;
       EXPECT_TRUE(add(from.state, i, o, before) && add(state, i, o, now));
-      now *= std::sqrt(huberWeight(before.norm(), kHuber));
+      now *= std::sqrt(huberWeight(before.norm(), huber));
       residuals.insert(residuals.end(), {now.x(), now.y()});
     }
   }
@@ -139,7 +139,7 @@ TEST_P(BundleLinearizationOfModel, CostIsTheSameWithAndWithoutDerivatives) {
   options.model = GetParam();
   options.noise = 1;
   const Linearized made = linearized(options, 0, 4);
-  EXPECT_NEAR(bundleCost(made.scene.camera, made.structure, made.state, kHuber), made.linearization.cost,
+  EXPECT_NEAR(bundleCost(made.scene.camera, made.structure, made.state, huber), made.linearization.cost,
               1e-10 * made.linearization.cost);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 // Inverse depths below 0 are points beyond infinity, where the residual goes on smoothly: they are let through while
 // adjusting, and end here.
-constexpr double kLeastInverseDepth = 1e-6;
+constexpr double least_inverse_depth = 1e-6;
 
 bool finite(const Pose& pose) { return pose.rotation.coeffs().allFinite() && pose.translation.allFinite(); }
 
@@ -210,7 +210,7 @@ std::unique_ptr<CeresProblem> buildCeresProblem(const Camera& camera, const Bund
 
 // Points are eliminated first; what is left is a dense system in a local map and a sparse one in a large one.
 ceres::Solver::Options solverOptions(CeresProblem& built, const BundleOptions& options) {
-  constexpr int kDenseCameras = 30;
+  constexpr int dense_cameras = 30;
   ceres::Solver::Options solver;
   solver.max_num_iterations = options.iterations;
   solver.num_threads = 1;
@@ -231,9 +231,9 @@ ceres::Solver::Options solverOptions(CeresProblem& built, const BundleOptions& o
   if (cameras == 0) {
     solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   } else if (points == 0) {
-    solver.linear_solver_type = cameras <= kDenseCameras ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
+    solver.linear_solver_type = cameras <= dense_cameras ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
   } else {
-    solver.linear_solver_type = cameras <= kDenseCameras ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+    solver.linear_solver_type = cameras <= dense_cameras ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
     solver.linear_solver_ordering = ordering;
   }
   return solver;
@@ -249,7 +249,7 @@ bool readBack(const CeresProblem& built, BundleProblem& problem) {
   for (std::size_t i = 0; i < problem.points.size(); ++i) {
     if (!built.point_used[i]) continue;
     if (!std::isfinite(built.state.inverseDepth(i))) return false;
-    problem.points[i].inverse_depth = std::max(kLeastInverseDepth, built.state.inverseDepth(i));
+    problem.points[i].inverse_depth = std::max(least_inverse_depth, built.state.inverseDepth(i));
   }
   return true;
 }

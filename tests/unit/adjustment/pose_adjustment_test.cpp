@@ -144,9 +144,9 @@ TEST(PoseAdjustment, ParallelEdgesAreNotTakenForAPose) {
 TEST(PoseAdjustment, CovarianceIsHonest) {
   for (const double sigma_tangent : {0.5, 1000.0}) {
     Random random(5);
-    constexpr int kTrials = 300;
+    constexpr int trials = 300;
     double sum = 0;
-    for (int run = 0; run < kTrials; ++run) {
+    for (int run = 0; run < trials; ++run) {
       TrialOptions options;
       options.sigma_tangent = sigma_tangent;
       const Trial trial = makeTrial(random, options);
@@ -157,9 +157,9 @@ TEST(PoseAdjustment, CovarianceIsHonest) {
       sum += error.dot(result.covariance.ldlt().solve(error)) / 6;
     }
     RecordProperty("nees_sigma_tangent_" + std::to_string(static_cast<int>(sigma_tangent)),
-                   std::to_string(sum / kTrials));
-    EXPECT_GT(sum / kTrials, 0.8) << sigma_tangent;
-    EXPECT_LT(sum / kTrials, 1.3) << sigma_tangent;
+                   std::to_string(sum / trials));
+    EXPECT_GT(sum / trials, 0.8) << sigma_tangent;
+    EXPECT_LT(sum / trials, 1.3) << sigma_tangent;
   }
 }
 
@@ -193,9 +193,9 @@ TEST(PoseAdjustment, InformationIsThatOfTheMeasurementsCovariance) {
 
 TEST(PoseAdjustment, CovarianceCountsUncertainDepths) {
   Random random(6);
-  constexpr int kTrials = 300;
+  constexpr int trials = 300;
   double sum = 0, squares = 0, squares_ignorant = 0;
-  for (int run = 0; run < kTrials; ++run) {
+  for (int run = 0; run < trials; ++run) {
     Trial trial = makeTrial(random, {});
     for (PoseObservation& o : trial.observations) {
       o.depth_sigma_px = uniform(random, 0, 3);
@@ -213,8 +213,8 @@ TEST(PoseAdjustment, CovarianceCountsUncertainDepths) {
     result = adjustPose(trial.camera, start, trial.observations, {});
     squares_ignorant += poseError(result.world_T_camera, trial.truth).squaredNorm();
   }
-  EXPECT_GT(sum / kTrials, 0.8);
-  EXPECT_LT(sum / kTrials, 1.3);
+  EXPECT_GT(sum / trials, 0.8);
+  EXPECT_LT(sum / trials, 1.3);
   EXPECT_LT(squares, squares_ignorant);
 }
 
@@ -274,16 +274,16 @@ TEST(PoseAdjustment, PointsBehindTheCameraAreOutliers) {
 }
 
 TEST(PoseAdjustment, ValuesThatAreNoNumbersAreOutliers) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Random random(11);
   Trial trial = makeTrial(random, {});
-  trial.observations[0].measurement.pixel.x() = kNan;
-  trial.observations[1].point.y() = kNan;
+  trial.observations[0].measurement.pixel.x() = nan;
+  trial.observations[1].point.y() = nan;
   trial.observations[2].point.z() = kInfinity;
   trial.observations[3].measurement.sigma_normal = 0;
-  trial.observations[4].measurement.normal.setConstant(kNan);
-  trial.observations[5].depth_sigma_px = kNan;
+  trial.observations[4].measurement.normal.setConstant(nan);
+  trial.observations[5].depth_sigma_px = nan;
   trial.observations[6].depth_sigma_px = kInfinity;
   trial.observations[7].point = trial.truth.translation;
   const PoseResult result = adjustPose(trial.camera, trial.truth, trial.observations, {});
@@ -293,7 +293,7 @@ TEST(PoseAdjustment, ValuesThatAreNoNumbersAreOutliers) {
   EXPECT_TRUE(result.covariance.allFinite());
 
   Pose start = trial.truth;
-  start.translation.x() = kNan;
+  start.translation.x() = nan;
   EXPECT_FALSE(adjustPose(trial.camera, start, trial.observations, {}).converged);
 }
 

@@ -124,12 +124,12 @@ TEST(Reprojection, OnlyTheFisheyeSeesSideways) {
   EXPECT_TRUE(inFront(pinhole, {0, 0, 1e-9}));
   EXPECT_FALSE(inFront(pinhole, {1, 0, 0}));
   EXPECT_TRUE(inFront(fisheye, {1, 0, 0}));
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Camera& camera : {pinhole, fisheye}) {
     EXPECT_FALSE(inFront(camera, {0, 0, -1}));
     EXPECT_FALSE(inFront(camera, {0, 0, 0}));
-    EXPECT_FALSE(inFront(camera, {0, kNan, 1}));
-    EXPECT_FALSE(inFront(camera, {0, 0, kNan}));
+    EXPECT_FALSE(inFront(camera, {0, nan, 1}));
+    EXPECT_FALSE(inFront(camera, {0, 0, nan}));
   }
 }
 

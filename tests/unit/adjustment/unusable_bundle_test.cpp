@@ -44,19 +44,19 @@ TEST(UnusableBundle, IndicesOutOfRangeLeaveTheProblem) {
 }
 
 TEST(UnusableBundle, ValuesThatAreNoNumbersTakeNoPart) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Random random(14);
   const BundleScene scene = makeBundleScene(random, {});
   BundleProblem problem = perturbedProblem(random, scene.truth, 0.05, 0.02);
-  problem.observations[0].measurement.pixel.x() = kNan;
+  problem.observations[0].measurement.pixel.x() = nan;
   problem.observations[1].measurement.pixel.y() = kInfinity;
   problem.observations[2].measurement.sigma_normal = 0;
-  problem.observations[3].measurement.normal.setConstant(kNan);
-  problem.points[20].inverse_depth = kNan;
+  problem.observations[3].measurement.normal.setConstant(nan);
+  problem.points[20].inverse_depth = nan;
   problem.points[21].inverse_depth = -1;
-  problem.points[22].host_bearing.x() = kNan;
-  problem.points[23].prior_sigma = kNan;
+  problem.points[22].host_bearing.x() = nan;
+  problem.points[23].prior_sigma = nan;
   const BundleResult result = adjustBundle(scene.camera, problem, manyIterations());
   ASSERT_TRUE(result.usable);
   EXPECT_LT(largestTranslationError(problem, scene.truth), 1e-6);
@@ -70,7 +70,7 @@ TEST(UnusableBundle, ValuesThatAreNoNumbersTakeNoPart) {
   }
 
   BundleProblem lost = perturbedProblem(random, scene.truth, 0.05, 0.02);
-  lost.cameras[4].world_T_camera.translation.x() = kNan;
+  lost.cameras[4].world_T_camera.translation.x() = nan;
   const double depth = lost.points[0].inverse_depth;
   EXPECT_FALSE(adjustBundle(scene.camera, lost, {}).usable);
   EXPECT_EQ(lost.points[0].inverse_depth, depth);

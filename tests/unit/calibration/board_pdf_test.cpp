@@ -79,7 +79,7 @@ TEST(BoardPdf, WhatDoesNotFitIsToldWithWhatWould) {
 // As a printer sees it, by a program of others.
 TEST(BoardPdf, IsFoundWholeInTheRasteredPage) {
   if (std::system("command -v pdftoppm >/dev/null 2>&1") != 0) GTEST_SKIP() << "no pdftoppm (Debian: poppler-utils)";
-  constexpr double kDotsPerMillimetre = 75 / 25.4;
+  constexpr double dots_per_millimetre = 75 / 25.4;
   for (const char* text : {"chessboard:9x6:25mm", "charuco:8x6:29mm:21mm", "aprilgrid:6x5:26mm:0.3"}) {
     const TemporaryFolder folder;
     const Board board = parseBoard(text);
@@ -98,7 +98,7 @@ TEST(BoardPdf, IsFoundWholeInTheRasteredPage) {
     const auto onPage = [&](const Eigen::Vector2d& place) {
       const double x_mm = first.left_mm + 1e3 * (place.x() - drawn.left_m);
       const double y_mm = page_mm - first.bottom_mm + 1e3 * (place.y() - drawn.bottom_m);
-      return Eigen::Vector2d(x_mm * kDotsPerMillimetre - 0.5, y_mm * kDotsPerMillimetre - 0.5);
+      return Eigen::Vector2d(x_mm * dots_per_millimetre - 0.5, y_mm * dots_per_millimetre - 0.5);
     };
     for (const BoardCorner& corner : numberedFrom(seen->corners, board, onPage(places[0]))) {
       const Eigen::Vector2d expected = onPage(places[static_cast<std::size_t>(corner.number)]);

@@ -12,11 +12,11 @@
 namespace edgeslam {
 namespace {
 
-const std::vector<std::string> kBoards{"chessboard:9x6:30mm", "charuco:8x6:30mm:22mm", "charuco:7x5:1mm:0.6mm:4x4",
-                                       "aprilgrid:6x5:88mm:0.3"};
+const std::vector<std::string> boards{"chessboard:9x6:30mm", "charuco:8x6:30mm:22mm", "charuco:7x5:1mm:0.6mm:4x4",
+                                      "aprilgrid:6x5:88mm:0.3"};
 
 TEST(Board, TextAndBoardAreTheSame) {
-  for (const std::string& text : kBoards) EXPECT_EQ(boardText(parseBoard(text)), text);
+  for (const std::string& text : boards) EXPECT_EQ(boardText(parseBoard(text)), text);
   EXPECT_EQ(boardText(parseBoard("chessboard:9x6:0.0298m")), "chessboard:9x6:29.8mm");
   EXPECT_EQ(boardText(parseBoard("charuco:8x6:3cm:22 mm:5x5")), "charuco:8x6:30mm:22mm");
 }
@@ -43,7 +43,7 @@ TEST(Board, WhatIsWrongIsNamed) {
 }
 
 TEST(Board, EveryCornerIsWhereTwoBlackAndTwoWhiteSquaresMeet) {
-  for (const std::string& text : kBoards) {
+  for (const std::string& text : boards) {
     const Board board = parseBoard(text);
     const BoardPaint paint(board);
     const double step = 0.02 * board.square_m;

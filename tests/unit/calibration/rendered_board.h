@@ -42,14 +42,14 @@ class BoardPaint {
   }
 
  private:
-  static constexpr double kSame_m = 1e-9;
+  static constexpr double same_m = 1e-9;
   static void sortUnique(std::vector<double>& values) {
     std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < kSame_m; }),
+    values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < same_m; }),
                  values.end());
   }
   // A side that was rounded otherwise still begins its cell.
-  static double middle(double side) { return side + kSame_m; }
+  static double middle(double side) { return side + same_m; }
   static int cell(const std::vector<double>& sides, double value) {
     return static_cast<int>(std::upper_bound(sides.begin(), sides.end(), value) - sides.begin()) - 1;
   }
@@ -156,7 +156,7 @@ inline Pose heldPose(const Board& board, const Camera& camera, const Hold& hold)
 // A good set: over the image, tilted every way, near and far.
 inline std::vector<Hold> goodHolds(const Camera& camera) {
   std::vector<Hold> holds;
-  constexpr double kTilt = 0.55;
+  constexpr double tilt = 0.55;
   for (int i = 0; i < 24; ++i) {
     Hold hold;
     const int place = i % 8 + (i % 8 >= 4 ? 1 : 0);  // the middle comes with the near ones
@@ -164,8 +164,8 @@ inline std::vector<Hold> goodHolds(const Camera& camera) {
     hold.x = 0.5 + 0.24 * (place % 3 - 1);
     hold.y = 0.5 + 0.2 * (place / 3 - 1);
     const int way = (i + i / 8) % 5;
-    hold.turned = way == 0 ? kTilt : way == 1 ? -kTilt : 0.08 * (i % 3 - 1);
-    hold.nodded = way == 2 ? kTilt : way == 3 ? -kTilt : 0.08 * (i % 2);
+    hold.turned = way == 0 ? tilt : way == 1 ? -tilt : 0.08 * (i % 3 - 1);
+    hold.nodded = way == 2 ? tilt : way == 3 ? -tilt : 0.08 * (i % 2);
     hold.roll = 0.25 * (i % 4) - 0.3;
     if (i % 6 == 5) {  // near, in the middle
       hold.x = 0.48 + 0.01 * (i % 5);
@@ -214,16 +214,16 @@ struct CameraDifference {
 inline CameraDifference cameraDifference(const Camera& truth, const Camera& estimate) {
   CameraDifference difference;
   double sum = 0;
-  constexpr int kSteps = 24;
-  for (int i = 0; i <= kSteps; ++i) {
-    for (int j = 0; j <= kSteps; ++j) {
-      const Eigen::Vector2d pixel(i * (truth.width - 1.0) / kSteps, j * (truth.height - 1.0) / kSteps);
+  constexpr int steps = 24;
+  for (int i = 0; i <= steps; ++i) {
+    for (int j = 0; j <= steps; ++j) {
+      const Eigen::Vector2d pixel(i * (truth.width - 1.0) / steps, j * (truth.height - 1.0) / steps);
       const double distance = (project(estimate, bearing(truth, pixel)) - pixel).norm();
       sum += distance * distance;
       difference.max_px = std::max(difference.max_px, distance);
     }
   }
-  difference.rms_px = std::sqrt(sum / ((kSteps + 1) * (kSteps + 1)));
+  difference.rms_px = std::sqrt(sum / ((steps + 1) * (steps + 1)));
   return difference;
 }
 

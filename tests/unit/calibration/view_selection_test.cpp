@@ -9,7 +9,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::int64_t kStill_ns = 500'000'000, kNext_ns = 33'000'000;
+constexpr std::int64_t still_ns = 500'000'000, kNext_ns = 33'000'000;
 
 class SelectedViews : public testing::Test {
  protected:
@@ -28,11 +28,11 @@ class SelectedViews : public testing::Test {
 };
 
 TEST_F(SelectedViews, StillsAreTakenWhereTheyDiffer) {
-  EXPECT_EQ(add(frame({0.4, 0.5, 0.6}), kStill_ns), ViewDecision::waiting);
-  EXPECT_EQ(add(frame({0.6, 0.5, 0.6}), kStill_ns), ViewDecision::taken);
-  EXPECT_EQ(add(frame({0.61, 0.5, 0.6}), kStill_ns), ViewDecision::taken) << "the one before";
-  EXPECT_EQ(add(frame({0.6, 0.5, 0.6, 0.4}), kStill_ns), ViewDecision::waiting) << "tilted";
-  EXPECT_EQ(add(frame({0.6, 0.5, 0.61, 0.41}), kStill_ns), ViewDecision::taken);
+  EXPECT_EQ(add(frame({0.4, 0.5, 0.6}), still_ns), ViewDecision::waiting);
+  EXPECT_EQ(add(frame({0.6, 0.5, 0.6}), still_ns), ViewDecision::taken);
+  EXPECT_EQ(add(frame({0.61, 0.5, 0.6}), still_ns), ViewDecision::taken) << "the one before";
+  EXPECT_EQ(add(frame({0.6, 0.5, 0.6, 0.4}), still_ns), ViewDecision::waiting) << "tilted";
+  EXPECT_EQ(add(frame({0.6, 0.5, 0.61, 0.41}), still_ns), ViewDecision::taken);
   selection_.end();
   ASSERT_EQ(selection_.views().size(), 3U);
   EXPECT_EQ(selection_.views()[2].frame, 3);
@@ -40,7 +40,7 @@ TEST_F(SelectedViews, StillsAreTakenWhereTheyDiffer) {
 }
 
 TEST_F(SelectedViews, InAVideoTheBoardMustStandStill) {
-  add(frame({0.40, 0.5, 0.6}), kStill_ns);
+  add(frame({0.40, 0.5, 0.6}), still_ns);
   EXPECT_EQ(add(frame({0.42, 0.5, 0.6}), kNext_ns), ViewDecision::moving) << "by six pixels";
   EXPECT_EQ(add(frame({0.42, 0.5, 0.6}), kNext_ns), ViewDecision::not_looked_at) << "too soon";
   EXPECT_EQ(add(frame({0.42, 0.5, 0.6}), 4 * kNext_ns), ViewDecision::waiting);
@@ -51,18 +51,18 @@ TEST_F(SelectedViews, InAVideoTheBoardMustStandStill) {
 TEST_F(SelectedViews, BlurredOnesAreNot) {
   RenderOptions blurred;
   blurred.blur_px = 3;
-  const ViewDecision decision = add(frame({0.5, 0.5, 0.7}, blurred), kStill_ns);
+  const ViewDecision decision = add(frame({0.5, 0.5, 0.7}, blurred), still_ns);
   EXPECT_TRUE(decision == ViewDecision::blurred || decision == ViewDecision::no_board);
   RenderOptions shaken;
   shaken.motion_px = {9, 3};
-  add(frame({0.5, 0.5, 0.7}, shaken), kStill_ns);
+  add(frame({0.5, 0.5, 0.7}, shaken), still_ns);
   selection_.end();
   EXPECT_TRUE(selection_.views().empty());
 }
 
 TEST_F(SelectedViews, AnotherImageSizeIsAnError) {
-  add(frame({0.5, 0.5, 0.7}), kStill_ns);
-  expectInputError([&] { add(cv::Mat(480, 640, CV_8U, cv::Scalar(0)), kStill_ns); }, "640 x 480", "320 x 240",
+  add(frame({0.5, 0.5, 0.7}), still_ns);
+  expectInputError([&] { add(cv::Mat(480, 640, CV_8U, cv::Scalar(0)), still_ns); }, "640 x 480", "320 x 240",
                    "one image size");
 }
 
@@ -81,7 +81,7 @@ TEST_F(SelectedViews, CoverageTellsWhatIsMissingUntilNothingIs) {
   const Coverage none = coverageOf({}, {320, 240});
   EXPECT_EQ(none.share(), 0);
   EXPECT_EQ(coverageProblems(none).size(), 1U);
-  add(frame({0.3, 0.3, 0.4}), kStill_ns);
+  add(frame({0.3, 0.3, 0.4}), still_ns);
   selection_.end();
   const Coverage one = coverageOf(selection_.views(), {320, 240});
   const std::vector<std::string> wishes = missingViews(one);

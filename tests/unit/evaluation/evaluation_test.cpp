@@ -7,7 +7,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double pi = 3.14159265358979323846;
 
 StampedPose at(double seconds, const Eigen::Vector3d& position, const Eigen::Vector3d& rotation = {0, 0, 0}) {
   return {std::llround(1e9 * seconds), {rotationExp(rotation), position}};
@@ -33,10 +33,10 @@ Trajectory moved(const Trajectory& trajectory, const Similarity& similarity) {
   return result;
 }
 
-const Similarity kMotion{2.5, rotationExp({0.3, -1.2, 0.4}), {3, -1, 7}};
+const Similarity motion{2.5, rotationExp({0.3, -1.2, 0.4}), {3, -1, 7}};
 
 TEST(AbsoluteError, VanishesForTheSamePathInAnotherFrameAndScale) {
-  const AbsoluteError error = absoluteError(moved(winding(), kMotion), winding(), Alignment::similarity);
+  const AbsoluteError error = absoluteError(moved(winding(), motion), winding(), Alignment::similarity);
   EXPECT_EQ(error.pairs, 60);
   EXPECT_LT(error.translation.max, 1e-12);
   EXPECT_NEAR(error.reference_T_estimate.scale, 1 / 2.5, 1e-12);
@@ -48,9 +48,9 @@ TEST(AbsoluteError, VanishesForTheSamePathInAnotherFrameAndScale) {
 }
 
 TEST(AbsoluteError, RigidAlignmentKeepsTheScale) {
-  const Similarity rigid{1, kMotion.rotation, kMotion.translation};
+  const Similarity rigid{1, motion.rotation, motion.translation};
   EXPECT_LT(absoluteError(moved(winding(), rigid), winding(), Alignment::rigid).translation.max, 1e-12);
-  const AbsoluteError scaled = absoluteError(moved(winding(), kMotion), winding(), Alignment::rigid);
+  const AbsoluteError scaled = absoluteError(moved(winding(), motion), winding(), Alignment::rigid);
   EXPECT_EQ(scaled.reference_T_estimate.scale, 1);
   EXPECT_GT(scaled.translation.rmse, 0.5);
 }
@@ -107,7 +107,7 @@ TEST(AbsoluteError, APathThatStandsStillHasFiniteFigures) {
 }
 
 TEST(RelativeError, VanishesForTheSamePathInAnotherFrameAndScale) {
-  const RelativeError error = relativeError(moved(winding(), kMotion), winding(), Alignment::similarity);
+  const RelativeError error = relativeError(moved(winding(), motion), winding(), Alignment::similarity);
   EXPECT_EQ(error.pairs, 49) << "60 poses, of which 10 have no pose a second later and one only the last";
   EXPECT_LT(error.translation.max, 1e-12);
   EXPECT_LT(error.rotation.max, 1e-7);
@@ -143,11 +143,11 @@ TEST(RelativeError, ComparesMotionsBackwardsAsTheTumTool) {
   // A true motion of 1 along x without rotation, estimated with a quarter turn at the first pose: from the second pose
   // the first lies at (-1, 0, 0) in both; seen forwards it would be off by sqrt(2).
   const Trajectory reference{at(0, {0, 0, 0}), at(1, {1, 0, 0}), at(2, {2, 0, 0})};
-  const Trajectory estimate{at(0, {0, 0, 0}, {0, 0, kPi / 2}), at(1, {1, 0, 0}), at(2, {2, 0, 0})};
+  const Trajectory estimate{at(0, {0, 0, 0}, {0, 0, pi / 2}), at(1, {1, 0, 0}), at(2, {2, 0, 0})};
   const RelativeError error = relativeError(estimate, reference, Alignment::none, 1.0);
   EXPECT_EQ(error.pairs, 1);
   EXPECT_NEAR(error.translation.max, 0, 1e-12);
-  EXPECT_NEAR(error.rotation.max, kPi / 2, 1e-12);
+  EXPECT_NEAR(error.rotation.max, pi / 2, 1e-12);
 }
 
 TEST(RelativeError, NoPoseIsPairedWithItself) {

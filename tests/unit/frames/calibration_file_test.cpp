@@ -5,21 +5,21 @@
 namespace edgeslam {
 namespace {
 
-const std::string kOwn =
+const std::string own =
     "# a camera\nwidth: 640\nheight: 480\nfx: 535.4\nfy: 539.2\ncx: 320.1\ncy: 247.6\n"
     "k1: 0.045\nk2: -0.11\np1: -0.0012\np2: 0.0007\nfps: 30.0\n";
 
-const std::string kRos =
+const std::string ros =
     "image_width: 640\nimage_height: 480\ncamera_name: head\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
     "  data: [535.4, 0, 320.1, 0, 539.2, 247.6, 0, 0, 1]\ndistortion_model: plumb_bob\n"
     "distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [0.1, 0.2, 0.3, 0.4, 0.5]\n";
 
-const std::string kKalibr =
+const std::string kalibr =
     "cam0:\n  cam_overlaps: []\n  camera_model: pinhole\n  distortion_coeffs: [0.1, 0.2, 0.3, 0.4]\n"
     "  distortion_model: equidistant\n  intrinsics: [190.9, 190.8, 254.9, 256.8]\n"
     "  resolution: [512, 512]\n  rostopic: /cam0/image_raw\n";
 
-const std::string kEuroc =
+const std::string euroc =
     "# General sensor definitions.\nsensor_type: camera\ncomment: VI-Sensor cam0\nT_BS:\n  cols: 4\n  rows: 4\n"
     "  data: [1, 0, 0, 0,\n         0, 1, 0, 0,\n         0, 0, 1, 0,\n         0, 0, 0, 1]\nrate_hz: 20\n"
     "resolution: [752, 480]\ncamera_model: pinhole\nintrinsics: [458.654, 457.296, 367.215, 248.375] #fu, fv, cu, cv\n"
@@ -43,7 +43,7 @@ void expectRefused(const std::string& text, const Texts&... messages) {
 }
 
 TEST(CalibrationFile, ReadsOurs) {
-  const Camera camera = read(kOwn);
+  const Camera camera = read(own);
   EXPECT_EQ(camera.model, CameraModel::pinhole_radial_tangential);
   EXPECT_EQ(camera.width, 640);
   EXPECT_EQ(camera.height, 480);
@@ -52,8 +52,8 @@ TEST(CalibrationFile, ReadsOurs) {
   EXPECT_EQ(camera.cx, 320.1);
   EXPECT_EQ(camera.cy, 247.6);
   EXPECT_EQ(camera.distortion, (std::array<double, 5>{0.045, -0.11, -0.0012, 0.0007, 0}));
-  EXPECT_EQ(read(kOwn + "k3: 0.5\n").distortion[4], 0.5);
-  EXPECT_EQ(read(kOwn + "board_cols: 9\nboard_rows: 6\nboard_square: 0.03\n").fx, 535.4);
+  EXPECT_EQ(read(own + "k3: 0.5\n").distortion[4], 0.5);
+  EXPECT_EQ(read(own + "board_cols: 9\nboard_rows: 6\nboard_square: 0.03\n").fx, 535.4);
 }
 
 TEST(CalibrationFile, ReadsOurFisheye) {
@@ -64,7 +64,7 @@ TEST(CalibrationFile, ReadsOurFisheye) {
 }
 
 TEST(CalibrationFile, ReadsRosCameraInfo) {
-  const Camera camera = read(kRos);
+  const Camera camera = read(ros);
   EXPECT_EQ(camera.model, CameraModel::pinhole_radial_tangential);
   EXPECT_EQ(camera.width, 640);
   EXPECT_EQ(camera.height, 480);
@@ -73,25 +73,25 @@ TEST(CalibrationFile, ReadsRosCameraInfo) {
   EXPECT_EQ(camera.cx, 320.1);
   EXPECT_EQ(camera.cy, 247.6);
   EXPECT_EQ(camera.distortion, (std::array<double, 5>{0.1, 0.2, 0.3, 0.4, 0.5}));
-  const std::string fisheye = replaced(replaced(kRos, "plumb_bob", "equidistant"), ", 0.5]", "]");
+  const std::string fisheye = replaced(replaced(ros, "plumb_bob", "equidistant"), ", 0.5]", "]");
   EXPECT_EQ(read(fisheye).model, CameraModel::kannala_brandt);
-  const std::string rational = replaced(kRos, "plumb_bob", "rational_polynomial");
+  const std::string rational = replaced(ros, "plumb_bob", "rational_polynomial");
   EXPECT_EQ(read(replaced(rational, "0.5]", "0.5, 0, 0, 0]")).distortion[4], 0.5);
   expectRefused(replaced(rational, "0.5]", "0.5, 0, 0.1, 0]"), ":12: ", "rational", "plumb_bob");
 }
 
 TEST(CalibrationFile, ReadsKalibrChains) {
-  const Camera camera = read(kKalibr);
+  const Camera camera = read(kalibr);
   EXPECT_EQ(camera.model, CameraModel::kannala_brandt);
   EXPECT_EQ(camera.width, 512);
   EXPECT_EQ(camera.fx, 190.9);
   EXPECT_EQ(camera.cy, 256.8);
   EXPECT_EQ(camera.distortion, (std::array<double, 5>{0.1, 0.2, 0.3, 0.4, 0}));
-  EXPECT_EQ(read(replaced(kKalibr, "equidistant", "radtan")).model, CameraModel::pinhole_radial_tangential);
+  EXPECT_EQ(read(replaced(kalibr, "equidistant", "radtan")).model, CameraModel::pinhole_radial_tangential);
 }
 
 TEST(CalibrationFile, ReadsEurocSensors) {
-  const Camera camera = read(kEuroc);
+  const Camera camera = read(euroc);
   EXPECT_EQ(camera.model, CameraModel::pinhole_radial_tangential);
   EXPECT_EQ(camera.width, 752);
   EXPECT_EQ(camera.fy, 457.296);
@@ -99,49 +99,49 @@ TEST(CalibrationFile, ReadsEurocSensors) {
 }
 
 TEST(CalibrationFile, ImpossibleValuesAreToldByLineAndKey) {
-  expectRefused(replaced(kOwn, "535.4", ".nan"), "c.yaml:4", "fx", "finite");
-  expectRefused(replaced(kOwn, "535.4", "nan"), "c.yaml:4", "fx", "finite");
-  expectRefused(replaced(kOwn, "535.4", "1e999"), "c.yaml:4", "fx");
-  expectRefused(replaced(kOwn, "535.4", "-535.4"), "c.yaml:4", "focal length fx", "greater than 0");
-  expectRefused(replaced(kOwn, "539.2", "0"), "c.yaml:5", "focal length fy");
-  expectRefused(replaced(kOwn, "320.1", "640"), "c.yaml:6", "cx", "639");
-  expectRefused(replaced(kOwn, "247.6", "-1"), "c.yaml:7", "cy", "479");
-  expectRefused(replaced(kOwn, "640", "0"), "c.yaml:2", "width");
-  expectRefused(replaced(kOwn, "640", "640.5"), "c.yaml:2", "width", "whole");
-  expectRefused(replaced(kOwn, "480", "1e300"), "c.yaml:3", "height");
-  expectRefused(replaced(kOwn, "0.045", ".inf"), "c.yaml:8", "k1", "finite");
-  expectRefused(replaced(kOwn, "30.0", "0"), "c.yaml:12", "fps");
-  expectRefused(replaced(kKalibr, "190.9", "-190.9"), "c.yaml:6", "fx");
-  expectRefused(replaced(kEuroc, "458.654", ".nan"), "intrinsics", "finite");
-  expectRefused(replaced(kRos, "[535.4", "[0"), "c.yaml", "fx");
+  expectRefused(replaced(own, "535.4", ".nan"), "c.yaml:4", "fx", "finite");
+  expectRefused(replaced(own, "535.4", "nan"), "c.yaml:4", "fx", "finite");
+  expectRefused(replaced(own, "535.4", "1e999"), "c.yaml:4", "fx");
+  expectRefused(replaced(own, "535.4", "-535.4"), "c.yaml:4", "focal length fx", "greater than 0");
+  expectRefused(replaced(own, "539.2", "0"), "c.yaml:5", "focal length fy");
+  expectRefused(replaced(own, "320.1", "640"), "c.yaml:6", "cx", "639");
+  expectRefused(replaced(own, "247.6", "-1"), "c.yaml:7", "cy", "479");
+  expectRefused(replaced(own, "640", "0"), "c.yaml:2", "width");
+  expectRefused(replaced(own, "640", "640.5"), "c.yaml:2", "width", "whole");
+  expectRefused(replaced(own, "480", "1e300"), "c.yaml:3", "height");
+  expectRefused(replaced(own, "0.045", ".inf"), "c.yaml:8", "k1", "finite");
+  expectRefused(replaced(own, "30.0", "0"), "c.yaml:12", "fps");
+  expectRefused(replaced(kalibr, "190.9", "-190.9"), "c.yaml:6", "fx");
+  expectRefused(replaced(euroc, "458.654", ".nan"), "intrinsics", "finite");
+  expectRefused(replaced(ros, "[535.4", "[0"), "c.yaml", "fx");
   // What a saved map would not take.
-  expectRefused(replaced(kOwn, "535.4", "1e13"), "c.yaml:4", "fx", "1e6");
-  expectRefused(replaced(kOwn, "539.2", "1e-13"), "c.yaml:5", "fy", "0.001");
-  expectRefused(replaced(kOwn, "0.045", "1e13"), "c.yaml:8", "distortion");
+  expectRefused(replaced(own, "535.4", "1e13"), "c.yaml:4", "fx", "1e6");
+  expectRefused(replaced(own, "539.2", "1e-13"), "c.yaml:5", "fy", "0.001");
+  expectRefused(replaced(own, "0.045", "1e13"), "c.yaml:8", "distortion");
 }
 
 TEST(CalibrationFile, UnknownMissingAndRepeatedKeysAreToldWithWhatWasMeant) {
-  expectRefused(replaced(kOwn, "height", "heigth"), "c.yaml:3", "'heigth'", "'height' meant");
-  expectRefused(kOwn + "exposure: 3\n", "c.yaml:13", "unknown key 'exposure'");
-  expectRefused(kOwn + "k4: 3\n", "c.yaml:13", "unknown key 'k4'");
-  expectRefused(kOwn + "fx: 500\n", "c.yaml:13", "'fx'", "twice");
-  expectRefused(replaced(kOwn, "fx: 535.4\n", ""), "'fx' is missing");
-  expectRefused(replaced(kKalibr, "intrinsics", "intrinsic"), "'intrinsics' is missing", "'intrinsic'");
-  expectRefused(replaced(kRos, "distortion_model: plumb_bob\n", ""), "'distortion_model' is missing");
+  expectRefused(replaced(own, "height", "heigth"), "c.yaml:3", "'heigth'", "'height' meant");
+  expectRefused(own + "exposure: 3\n", "c.yaml:13", "unknown key 'exposure'");
+  expectRefused(own + "k4: 3\n", "c.yaml:13", "unknown key 'k4'");
+  expectRefused(own + "fx: 500\n", "c.yaml:13", "'fx'", "twice");
+  expectRefused(replaced(own, "fx: 535.4\n", ""), "'fx' is missing");
+  expectRefused(replaced(kalibr, "intrinsics", "intrinsic"), "'intrinsics' is missing", "'intrinsic'");
+  expectRefused(replaced(ros, "distortion_model: plumb_bob\n", ""), "'distortion_model' is missing");
 }
 
 TEST(CalibrationFile, WrongTypesAndSizesAreToldByLineAndKey) {
-  expectRefused(replaced(kOwn, "535.4", "wide"), "c.yaml:4", "fx", "'wide'");
-  expectRefused(replaced(kOwn, "535.4", "[1, 2]"), "c.yaml:4", "fx", "number");
-  expectRefused(replaced(kOwn, "535.4", ""), "c.yaml:4", "fx");
-  expectRefused(kOwn + "model: fisheye\n", "c.yaml:13", "kannala_brandt", "'fisheye'");
-  expectRefused(replaced(kKalibr, "[0.1, 0.2, 0.3, 0.4]", "[0.1, 0.2]"), "c.yaml:4", "distortion_coeffs", "4", "2");
-  expectRefused(replaced(kKalibr, "[512, 512]", "[512]"), "c.yaml:7", "resolution");
-  expectRefused(replaced(kKalibr, "[512, 512]", "[512, 1e99]"), "c.yaml:7", "resolution");
-  expectRefused(replaced(kKalibr, "equidistant", "omni"), "c.yaml:5", "distortion_model", "'omni'");
-  expectRefused(replaced(kKalibr, "pinhole", "omni"), "c.yaml:3", "camera_model", "'omni'");
-  expectRefused(replaced(kRos, "plumb_bob", "equidistant"), "c.yaml:12", "4", "5");
-  expectRefused(replaced(kRos, ", 0, 0, 1]", "]"), "c.yaml:7", "data", "9");
+  expectRefused(replaced(own, "535.4", "wide"), "c.yaml:4", "fx", "'wide'");
+  expectRefused(replaced(own, "535.4", "[1, 2]"), "c.yaml:4", "fx", "number");
+  expectRefused(replaced(own, "535.4", ""), "c.yaml:4", "fx");
+  expectRefused(own + "model: fisheye\n", "c.yaml:13", "kannala_brandt", "'fisheye'");
+  expectRefused(replaced(kalibr, "[0.1, 0.2, 0.3, 0.4]", "[0.1, 0.2]"), "c.yaml:4", "distortion_coeffs", "4", "2");
+  expectRefused(replaced(kalibr, "[512, 512]", "[512]"), "c.yaml:7", "resolution");
+  expectRefused(replaced(kalibr, "[512, 512]", "[512, 1e99]"), "c.yaml:7", "resolution");
+  expectRefused(replaced(kalibr, "equidistant", "omni"), "c.yaml:5", "distortion_model", "'omni'");
+  expectRefused(replaced(kalibr, "pinhole", "omni"), "c.yaml:3", "camera_model", "'omni'");
+  expectRefused(replaced(ros, "plumb_bob", "equidistant"), "c.yaml:12", "4", "5");
+  expectRefused(replaced(ros, ", 0, 0, 1]", "]"), "c.yaml:7", "data", "9");
 }
 
 TEST(CalibrationFile, WhatIsNoCalibrationIsRefused) {

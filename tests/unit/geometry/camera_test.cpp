@@ -77,7 +77,7 @@ TEST_P(EveryCamera, JacobianHoldsOnTheAxisAndBesideIt) {
 
 TEST(Camera, FisheyeSeesBehindTheImagePlane) {
   const Camera camera = fisheyeCamera();
-  const double angle = 100 * kDegree;
+  const double angle = 100 * degree;
   const Eigen::Vector3d ray(std::sin(angle), 0, std::cos(angle));
   ASSERT_LT(ray.z(), 0);
   EXPECT_LT(angleBetween(bearing(camera, project(camera, ray)), ray), 1e-10);

@@ -10,7 +10,7 @@
 
 namespace edgeslam {
 
-constexpr double kDegree = M_PI / 180;
+constexpr double degree = M_PI / 180;
 
 class Random {
  public:

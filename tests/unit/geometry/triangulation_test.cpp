@@ -87,7 +87,7 @@ TEST(Triangulate, RecoversDepthOfAnEdgeWhosePixelSlidesAlongIt) {
     Sight sight = makeSight(random, camera, random.uniform(1, 10), 2);
     for (TriangulationView& view : sight.views) {
       const Eigen::Vector2d along = epipolarDirection(sight, view.view_T_host);
-      const Eigen::Vector2d normal = turned(along, random.uniform(-60, 60) * kDegree);
+      const Eigen::Vector2d normal = turned(along, random.uniform(-60, 60) * degree);
       view.measurement = {view.measurement.pixel + random.uniform(-20, 20) * turned(normal, M_PI / 2), normal, 0.5,
                           1e6};
     }
@@ -110,10 +110,10 @@ TEST(Triangulate, SigmaTellsAnEdgeAlongTheEpipolarLine) {
       return triangulate(sight.camera, sight.host_bearing, sight.views, sight.inverse_depth).sigma;
     };
     const double across = sigmaAt(0);
-    EXPECT_NEAR(sigmaAt(60 * kDegree) / across, 2, 1e-3);
-    EXPECT_NEAR(sigmaAt(85 * kDegree) / across, 1 / std::cos(85 * kDegree), 0.05);
-    EXPECT_GT(sigmaAt(90 * kDegree) / across, 1000) << "only the tangent's 1000 px are left";
-    EXPECT_GT(sigmaAt(90 * kDegree), 0.15 * sight.inverse_depth) << "what the depth gate refuses";
+    EXPECT_NEAR(sigmaAt(60 * degree) / across, 2, 1e-3);
+    EXPECT_NEAR(sigmaAt(85 * degree) / across, 1 / std::cos(85 * degree), 0.05);
+    EXPECT_GT(sigmaAt(90 * degree) / across, 1000) << "only the tangent's 1000 px are left";
+    EXPECT_GT(sigmaAt(90 * degree), 0.15 * sight.inverse_depth) << "what the depth gate refuses";
   }
 }
 

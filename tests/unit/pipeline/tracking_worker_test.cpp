@@ -119,7 +119,7 @@ TEST(TrackingWorker, MessagesAreNumberedOneByOneAndKeyframesNeverGoBack) {
     if (run.messages[i].frame.keyframe < 0) continue;
     EXPECT_GT(run.messages[i].frame.keyframe, keyframe) << i;
     keyframe = run.messages[i].frame.keyframe;
-    keyframes += run.messages[i].lost ? 0 : 1;
+    keyframes += run.messages[i].frame.kind == FrameKind::lost ? 0 : 1;
   }
   EXPECT_GE(keyframes, 3);
   // The numbers of lost frames that were not found are nobody's.

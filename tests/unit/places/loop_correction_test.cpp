@@ -12,7 +12,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr int kTurn = 24;  // keyframes of a whole turn
+constexpr int turn = 24;  // keyframes of a whole turn
 
 bool sortedAndWhole(const Map& map) {
   for (const Keyframe& keyframe : map.keyframes) {
@@ -45,7 +45,7 @@ Map firstKeyframes(const Map& map, std::size_t count) {
 class LoopCorrectionTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    truth = new std::vector<Pose>(test::turnAround(kTurn, 4));
+    truth = new std::vector<Pose>(test::turnAround(turn, 4));
     place = new Map(test::makePlace(7, test::placeCamera(), *truth));
     test::addDrift(0.006, 0.002, *place);
   }
@@ -58,7 +58,7 @@ class LoopCorrectionTest : public testing::Test {
   const Camera camera = test::placeCamera();
 
   LoopCorrection correctionOf(const Map& map) const {
-    const KeyframeId current = kTurn + 1;
+    const KeyframeId current = turn + 1;
     const LoopVerification loop = verifyLoop(camera, {}, map, current, 1, {}, 1);
     EXPECT_TRUE(loop.accepted) << loop.reason;
     LoopCorrection correction;
@@ -98,9 +98,9 @@ TEST_F(LoopCorrectionTest, OldPointsAreSeenByTheNewSideOnce) {
   Map map = *place;
   const LoopCorrection correction = correctionOf(map);
   EXPECT_GT(correction.observations.size(), 60u);
-  ASSERT_EQ(sharedPoints(map, kTurn + 1)[1], 0);
+  ASSERT_EQ(sharedPoints(map, turn + 1)[1], 0);
   applyCorrection(correction, map);
-  EXPECT_GT(sharedPoints(map, kTurn + 1)[1], 30);
+  EXPECT_GT(sharedPoints(map, turn + 1)[1], 30);
   EXPECT_TRUE(sortedAndWhole(map));
 
   Map twice = map;
@@ -114,14 +114,14 @@ TEST_F(LoopCorrectionTest, OldPointsAreSeenByTheNewSideOnce) {
 }
 
 TEST_F(LoopCorrectionTest, AMapThatWentOnGoesAlong) {
-  const Map then = firstKeyframes(*place, kTurn + 2);
+  const Map then = firstKeyframes(*place, turn + 2);
   const LoopCorrection correction = correctionOf(then);
-  ASSERT_EQ(correction.new_world_S_world.size(), static_cast<std::size_t>(kTurn + 2));
+  ASSERT_EQ(correction.new_world_S_world.size(), static_cast<std::size_t>(turn + 2));
   Map now = *place;
   now.points.erase(correction.observations.front().observation.point);
   applyCorrection(correction, now);
   const Similarity& last = correction.new_world_S_world.rbegin()->second;
-  for (std::size_t k = kTurn + 2; k < now.keyframes.size(); ++k) {
+  for (std::size_t k = turn + 2; k < now.keyframes.size(); ++k) {
     const Eigen::Vector3d moved = last * place->keyframes[k].world_T_camera.translation;
     EXPECT_LT((now.keyframes[k].world_T_camera.translation - moved).norm(), 1e-12);
   }
@@ -144,11 +144,11 @@ TEST_F(LoopCorrectionTest, LoopClosingFindsTheReturnAndNothingBefore) {
     for (const JudgedLoop& judged : outcome.considered) {
       EXPECT_FALSE(judged.reason.empty());
       if (!judged.accepted) continue;
-      const int turned = (outcome.current - judged.keyframe + kTurn / 2) % kTurn - kTurn / 2;  // keyframes
+      const int turned = (outcome.current - judged.keyframe + turn / 2) % turn - turn / 2;  // keyframes
       EXPECT_LT(std::abs(turned), 4);
     }
     if (outcome.correction) {
-      EXPECT_GE(count, static_cast<std::size_t>(kTurn - 3));
+      EXPECT_GE(count, static_cast<std::size_t>(turn - 3));
       closed = true;
     }
   }
@@ -174,7 +174,7 @@ TEST_F(LoopCorrectionTest, NoDriftIsThatLarge) {
 }
 
 TEST_F(LoopCorrectionTest, LoopsThatContradictEachOtherAreRefused) {
-  const KeyframeId current = kTurn + 1;
+  const KeyframeId current = turn + 1;
   const auto loopTo = [&](KeyframeId candidate, const Pose& world_T_current) {
     const Pose current_T_candidate = world_T_current.inverse() * place->keyframes[candidate].world_T_camera;
     JudgedLoop loop;

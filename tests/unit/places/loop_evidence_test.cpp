@@ -11,8 +11,8 @@
 namespace edgeslam {
 namespace {
 
-constexpr int kThere = 4;           // keyframes of the old side, from 0 on
-constexpr KeyframeId kBetween = 4;  // looks the other way
+constexpr int kThere = 4;          // keyframes of the old side, from 0 on
+constexpr KeyframeId between = 4;  // looks the other way
 constexpr KeyframeId kCurrent = 6, kCandidate = 1;
 
 // A place seen from nearly the same poses twice, with nothing in common in the map.
@@ -31,7 +31,7 @@ class LoopEvidence : public testing::Test {
   static void TearDownTestSuite() { delete place; }
 
   enum class Side { there, here };
-  static Side sideOf(const MapPoint& point) { return point.host < kBetween ? Side::there : Side::here; }
+  static Side sideOf(const MapPoint& point) { return point.host < between ? Side::there : Side::here; }
 
   // Depths of one side are off by `off` and say so much: both as the standard deviation of their logarithm.
   static void blurDepths(Side side, double off, double said, Map& map) {

@@ -10,12 +10,12 @@
 namespace edgeslam::test {
 namespace {
 
-constexpr int kTurn = 24;  // keyframes of a whole turn
-constexpr KeyframeId kCurrent = kTurn + 3, kCandidate = 2;
+constexpr int turn = 24;  // keyframes of a whole turn
+constexpr KeyframeId kCurrent = turn + 3, kCandidate = 2;
 constexpr double degree = M_PI / 180;
 
 const std::vector<Pose>& truth() {
-  static const std::vector<Pose> poses = turnAround(kTurn, 5);
+  static const std::vector<Pose> poses = turnAround(turn, 5);
   return poses;
 }
 
@@ -40,7 +40,7 @@ LoopVerification verify(const Map& map, KeyframeId current, KeyframeId candidate
 constexpr double log_scale_a_step = 0.07 / (kCurrent - kCandidate);
 Map drifted() {
   Map map = bareRoom();
-  addDrift(log_scale_a_step, degree / kTurn, map);
+  addDrift(log_scale_a_step, degree / turn, map);
   return map;
 }
 
@@ -63,7 +63,7 @@ TEST(LoopSearch, FindsTheSimilarityOfADriftedReturn) {
 }
 
 TEST(LoopSearch, OtherWallsAreRefused) {
-  for (KeyframeId candidate = 8; candidate < kTurn - 5; ++candidate) {
+  for (KeyframeId candidate = 8; candidate < turn - 5; ++candidate) {
     const LoopVerification loop = verify(bareRoom(), kCurrent, candidate);
     EXPECT_FALSE(loop.accepted) << candidate << ": " << loop.reason;
     EXPECT_FALSE(loop.reason.empty());
@@ -131,7 +131,7 @@ TEST(LoopSearch, AChangeOfScaleBeyondTheBoundIsRefusedEitherWay) {
 TEST(LoopSearch, TakesThePoseThatShowsMostOfTheOldSide) {
   const Map map = drifted();
   int more = 0;
-  for (const auto& pair : {std::pair{kTurn + 1, 1}, {kTurn + 2, 2}, {kCurrent, kCandidate}}) {
+  for (const auto& pair : {std::pair{turn + 1, 1}, {turn + 2, 2}, {kCurrent, kCandidate}}) {
     const int current = pair.first, candidate = pair.second;
     const auto found_share = [&](int refined_poses) {
       LoopVerificationOptions options = withoutDescriptors();

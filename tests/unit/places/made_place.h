@@ -120,7 +120,7 @@ inline Map makePlace(std::uint64_t seed, const Camera& camera, const std::vector
       if (seen.z() < 0.1) continue;
       const Eigen::Vector2d pixel = project(camera, seen);
       if (!insideImage(camera, pixel, 8)) continue;
-      const StructureTensor tensor = structureTensor(grey, pixel.cast<float>(), choice.tensor_window);
+      const StructureTensor tensor = structureTensor(grey, pixel.cast<float>(), choice.accuracy.tensor_window);
       PointObservation observation;
       observation.point = point_id;
       observation.bearing = bearing(camera, pixel);

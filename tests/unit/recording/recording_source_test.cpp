@@ -3,6 +3,7 @@
 #include <random>
 
 #include "frames/folder_source.h"
+#include "recording/open_frame_source.h"
 #include "unit/recording/made_recording.h"
 
 namespace edgeslam {

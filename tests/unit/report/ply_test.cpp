@@ -7,7 +7,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::size_t kVertexBytes = 39;
+constexpr std::size_t vertex_bytes = 39;
 
 std::string body(const std::string& ply) {
   const std::string end = "end_header\n";
@@ -32,15 +32,15 @@ TEST(Ply, HoldsEveryPropertyInTheDocumentedOrder) {
   points[0].position.setZero();
   points[0].edge_direction.setZero();
   const std::string bytes = body(formatPly(points));
-  ASSERT_EQ(bytes.size(), 2 * kVertexBytes);
+  ASSERT_EQ(bytes.size(), 2 * vertex_bytes);
   EXPECT_EQ(valueAt<std::int32_t>(bytes, 24), -1);
-  const std::string second = bytes.substr(kVertexBytes);
+  const std::string second = bytes.substr(vertex_bytes);
   const float floats[]{1.5F, -2.25F, 1e-3F, 0.0F, 0.6F, -0.8F};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(valueAt<float>(second, 4 * i), floats[i]);
   EXPECT_EQ(valueAt<std::int32_t>(second, 24), 70000);
   EXPECT_EQ(valueAt<std::int32_t>(second, 28), -2);
   EXPECT_EQ(valueAt<float>(second, 32), 0.125F);
-  for (std::size_t i = 36; i < kVertexBytes; ++i) EXPECT_EQ(valueAt<unsigned char>(second, i), 200);
+  for (std::size_t i = 36; i < vertex_bytes; ++i) EXPECT_EQ(valueAt<unsigned char>(second, i), 200);
 }
 
 TEST(Ply, TheHeaderSaysWhatFollows) {

@@ -24,7 +24,7 @@ class ServiceNotifications : public testing::Test {
 };
 
 using Told = std::vector<std::string>;
-constexpr auto kMillisecond = std::chrono::milliseconds(1);
+constexpr auto millisecond = std::chrono::milliseconds(1);
 
 TEST_F(ServiceNotifications, StartAndEnd) {
   ServiceNotification service;
@@ -46,7 +46,7 @@ TEST_F(ServiceNotifications, AStatusIsOneLineAndToldOnce) {
 TEST_F(ServiceNotifications, TheWatchdogIsFedFourTimesInItsTime) {
   ServiceNotification service;
   const ServiceNotification::Clock::time_point start(std::chrono::hours(1));
-  for (int i = 0; i < 2000; ++i) service.alive(start + i * kMillisecond);
+  for (int i = 0; i < 2000; ++i) service.alive(start + i * millisecond);
   EXPECT_EQ(toldBy(service), Told(4, "WATCHDOG=1"));
   EXPECT_EQ(toldBy(service), Told{}) << "no frames, no food";
 }

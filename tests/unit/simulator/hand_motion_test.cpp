@@ -10,7 +10,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double degree = 3.14159265358979323846 / 180;
 
 struct Speeds {
   double metres = 0;   // [m/s]
@@ -21,7 +21,7 @@ Speeds speedsAt(const CameraMotion& motion, double time_s) {
   constexpr double step_s = 1e-3;
   const Pose before = poseAt(motion, time_s - step_s), after = poseAt(motion, time_s + step_s);
   return {(after.translation - before.translation).norm() / (2 * step_s),
-          rotationAngle(before.rotation, after.rotation) / (2 * step_s) / kDegree};
+          rotationAngle(before.rotation, after.rotation) / (2 * step_s) / degree};
 }
 
 class Scenes : public testing::TestWithParam<SceneKind> {};
@@ -115,7 +115,7 @@ TEST(CorridorMotion, ReturnsToItsStartAfterALap) {
   const double lap_s = lapTime(motion);
   const Pose start = poseAt(motion, 0), back = poseAt(motion, lap_s);
   EXPECT_LT((back.translation - start.translation).norm(), 0.02);
-  EXPECT_LT(rotationAngle(back.rotation, start.rotation), 2 * kDegree);
+  EXPECT_LT(rotationAngle(back.rotation, start.rotation), 2 * degree);
   EXPECT_GT((poseAt(motion, lap_s / 2).translation - start.translation).norm(), 3);
 }
 

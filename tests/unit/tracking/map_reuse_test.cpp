@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "edges/point_choice.h"
 #include "unit/tracking/textured_plane.h"
 
 namespace edgeslam {
