@@ -7,7 +7,6 @@
 #include "frames/calibration_file.h"
 #include "fuzz_input.h"
 #include "map/map_check.h"
-#include "recording/recording_layout.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace edgeslam;
