@@ -42,7 +42,13 @@ void LiveRun::goOnWith(Map map) {
   tracking_.goOnWith(mapping_.mapper().view(), first_free_point);
 }
 
+void LiveRun::showTo(FrameLooks& looks) {
+  assert(!tracking_thread_.joinable());
+  tracking_.showTo(looks);
+}
+
 void LiveRun::start() {
+  assert(!publishing_thread_.joinable());
   if (options_.lock_memory) {
     if (std::optional<RefusedSetup> problem = lockMemory()) problems_.push_back(std::move(*problem));
   }
@@ -84,6 +90,11 @@ void LiveRun::stop(bool settle) {
   tracking_.tellApplied();
   channels_.result_ready.post();
   publishing_thread_.join();
+}
+
+const Mapper& LiveRun::mapper() const {
+  assert(!mapping_thread_.joinable());
+  return mapping_.mapper();
 }
 
 LiveCounts LiveRun::counts() const {

@@ -42,7 +42,7 @@ class LiveRun {
   // Before the start: continues a map made earlier.
   void goOnWith(Map map);
   // Before the start: frames that are asked for are shown there. `looks` must outlive the run.
-  void showTo(FrameLooks& looks) { tracking_.showTo(looks); }
+  void showTo(FrameLooks& looks);
   void start();  // std::system_error where the system has no thread for it; only to be destroyed then
 
   // The capture thread's: fill the slot, then hand it over. Never waits.
@@ -63,7 +63,7 @@ class LiveRun {
   // What could not be set up of the memory and of the threads. After start().
   const std::vector<RefusedSetup>& problems() const { return problems_; }
   // After stop().
-  const Mapper& mapper() const { return mapping_.mapper(); }
+  const Mapper& mapper() const;
 
  private:
   template <typename Part>

@@ -1,6 +1,7 @@
 #include "pipeline/lockstep_run.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <limits>
 #include <utility>
@@ -29,7 +30,13 @@ LockstepRun::LockstepRun(const Camera& camera, const Settings& settings, std::in
   }
 }
 
+void LockstepRun::repeat(RunDecisions decisions) {
+  assert(processed_ == 0);
+  recorded_ = std::move(decisions);
+}
+
 void LockstepRun::goOnWith(Map map) {
+  assert(processed_ == 0 && !map.keyframes.empty());
   const PointId first_free_point = firstFreePoint(map);
   record_.goOnFrom(map.keyframes.back().id + 1);
   mapping_.goOnWith(std::move(map));

@@ -19,7 +19,7 @@ class LockstepRun {
   LockstepRun(const Camera& camera, const Settings& settings, std::int64_t expected_frames, int drawings);
 
   // Before the first frame: repeats a live run, whose frames are given as it processed them.
-  void repeat(RunDecisions decisions) { recorded_ = std::move(decisions); }
+  void repeat(RunDecisions decisions);
   // Before the first frame: continues a map made earlier, of the same camera. The camera is somewhere in it.
   void goOnWith(Map map);
   // The map as it is now; without keyframes where none stands yet.

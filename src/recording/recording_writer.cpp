@@ -1,6 +1,7 @@
 #include "recording/recording_writer.h"
 
 #include <algorithm>
+#include <cassert>
 #include <exception>
 
 #include "edgeslam/input_error.h"
@@ -40,6 +41,7 @@ RecordingWriter::~RecordingWriter() {
 
 void RecordingWriter::open(const std::string& folder, const RecordingDescription& description,
                            const RecordingLimits& limits) {
+  assert(!files_);
   const std::string camera = formatCalibrationFile(description.camera);
   const std::string program = formatDescription(description.program_version);
   files_ = std::make_unique<RecordingFiles>(folder, camera, description.configuration, program);

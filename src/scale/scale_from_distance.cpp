@@ -1,13 +1,14 @@
 #include "scale/scale_from_distance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "scale/utime.h"
 
 namespace edgeslam {
 
-PositionHistory::PositionHistory(std::size_t capacity) : positions_(capacity) {}
+PositionHistory::PositionHistory(std::size_t capacity) : positions_(capacity) { assert(capacity > 0); }
 
 void PositionHistory::add(const FrameResult& result) {
   const std::optional<MeasuredPose> measured = measuredPose(result);

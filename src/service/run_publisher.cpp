@@ -1,6 +1,7 @@
 #include "service/run_publisher.h"
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 #include <utility>
 
@@ -32,6 +33,7 @@ void RunPublisher::begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder,
 }
 
 void RunPublisher::end(bool is_last) {
+  assert(run_);
   work_.finish();
   work_.complete();
   saving_.end();
