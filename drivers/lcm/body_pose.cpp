@@ -35,7 +35,7 @@ Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& rob
 
 std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredPose& now, const RobotSetup& robot) {
   const double seconds = 1e-9 * static_cast<double>(now.time_ns - before.time_ns);
-  if (!(seconds > 0 && seconds <= longest_motion_s)) return std::nullopt;
+  if (before.world != now.world || !(seconds > 0 && seconds <= longest_motion_s)) return std::nullopt;
   const Pose body_T_camera = cameraOnBody(robot);
   BodyMotion motion;
   motion.from_ns = before.time_ns;

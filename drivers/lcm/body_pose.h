@@ -33,8 +33,8 @@ Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot);
 // camera's is not finite or claims certainty.
 Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& robot);
 
-// None where the time between is not over 0 or over longest_motion_s. By cameraMotion(), so that a correction of
-// the map in between is no motion where the keyframe is the same.
+// None between two worlds, or where the time between is not over 0 or over longest_motion_s. By cameraMotion(), so that
+// a correction of the map in between is no motion where the keyframe is the same.
 std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredPose& now, const RobotSetup& robot);
 
 }  // namespace edgeslam

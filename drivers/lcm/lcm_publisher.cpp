@@ -33,8 +33,8 @@ LcmPublisher::LcmPublisher(const LcmOptions& options, const Pose& body_T_camera)
 
 void LcmPublisher::frame(const FrameResult& result) {
   const PublishedFrame messages = frameMessages(result, robot_, before_, states_++, realUtime());
+  sender_.send(options_.state_channel, messages.state);  // first: it tells the world that the pose is in
   if (messages.pose) sender_.send(options_.pose_channel, *messages.pose);
-  sender_.send(options_.state_channel, messages.state);
   sender_.send(options_.odometry_channel, messages.update);
   if (result.state == TrackingState::initialising) before_.reset();  // the next pose is in another map
   if (const std::optional<MeasuredPose> measured = measuredPose(result)) before_ = measured;

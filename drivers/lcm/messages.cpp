@@ -40,6 +40,7 @@ state_t stateMessage(const FrameResult& result, const RobotSetup& robot, const T
   state.utime = utimeOf(result.time_ns);
   state.frame = result.index;
   state.has_pose = hasUsablePose(result);
+  state.world = worldOf(result);
   const bool broken = result.has_pose && !state.has_pose;
   state.state = stateNumber(broken ? TrackingState::lost : result.state);
   state.reason = messageText(broken ? "the pose is not finite" : result.reason);

@@ -67,6 +67,7 @@ status_t statusMessage(const PublisherStatus& status, const FrameFigures& frames
   message.publishing_queue = status.publishing_queue;
   message.keyframes = status.keyframes;
   message.points = status.points;
+  message.worlds = status.worlds;
   message.memory_bytes = system.memory_bytes;
   message.temperature_c = finite(system.temperature_c);
   message.recording = status.recording;

@@ -24,6 +24,7 @@ struct PublisherStatus {
   int publishing_queue = -1;
   int keyframes = -1;
   int points = -1;
+  int worlds = -1;
   bool recording = false;
   std::string camera_problem;  // why no frames come: the state is then lost, and this its reason; or empty
   std::string scale_problem;   // why the scale is not known, or not renewed; or empty

@@ -20,13 +20,18 @@ struct ViewedAnswer {
   std::string message;
 };
 
+struct WorldOfMap {
+  std::shared_ptr<const Map> map;
+  int world = 0;
+};
+
 struct ViewFeed {
   static constexpr std::size_t most_commands = 8;  // that wait for their answer
 
   FrameLooks looks;                                                                  // from tracking
   boost::lockfree::spsc_queue<FrameSample, boost::lockfree::capacity<256>> samples;  // from publishing
   TripleBuffer<ViewedState> states;                                                  // likewise
-  TripleBuffer<std::shared_ptr<const Map>> maps;                                     // likewise
+  TripleBuffer<WorldOfMap> maps;                                                     // likewise
   Channel<Command> commands{most_commands};                                          // to publishing
   Channel<ViewedAnswer> answers{most_commands};                                      // from publishing
   std::atomic<bool> is_watched{false};

@@ -64,7 +64,7 @@ bool isFinite(const Pose& pose) { return pose.translation.allFinite() && pose.ro
 Json frameOf(const FrameResult& frame) {
   Json json{{"index", frame.index},   {"utime", utimeOf(frame.time_ns)}, {"state", stateName(frame.state)},
             {"reason", frame.reason}, {"tracked", frame.tracked_points}, {"mapped", frame.mapped_points},
-            {"pose", nullptr}};
+            {"pose", nullptr},        {"world", worldOf(frame)}};
   if (frame.has_pose && isFinite(frame.world_T_camera)) json["pose"] = poseOf(frame.world_T_camera);
   return json;
 }
@@ -94,6 +94,7 @@ Json statusOf(const PublisherStatus& status) {
           {"mapping_queue", status.mapping_queue},
           {"keyframes", status.keyframes},
           {"points", status.points},
+          {"worlds", status.worlds},
           {"recording", status.recording},
           {"camera_problem", status.camera_problem},
           {"scale_problem", status.scale_problem}};

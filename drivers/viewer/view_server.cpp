@@ -162,10 +162,10 @@ void ViewServer::lookAtState() {
 
 void ViewServer::lookAtMap() {
   if (!feed_.maps.take()) return;
-  const std::shared_ptr<const Map> map = std::exchange(feed_.maps.reading(), nullptr);
+  const auto [map, world] = std::exchange(feed_.maps.reading(), {});
   if (!map) return;
   const std::int64_t number = latest_map_ ? latest_map_->number + 1 : 1;
-  latest_map_ = std::make_shared<const ViewedMap>(viewedMap(*map, setup_.camera, number));
+  latest_map_ = std::make_shared<const ViewedMap>(viewedMap(*map, world, setup_.camera, number));
   for (ViewStream* stream : streams_) stream->offer(latest_map_);
 }
 

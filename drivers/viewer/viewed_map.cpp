@@ -37,6 +37,12 @@ void thin(std::vector<Record>& records, std::size_t most) {
                 records.end());
 }
 
+template <typename Record>
+void keepWorld(std::vector<Record>& records, int world) {
+  records.erase(std::remove_if(records.begin(), records.end(), [=](const Record& r) { return r.world != world; }),
+                records.end());
+}
+
 bool isSame(const ViewedPoint& a, const ViewedPoint& b) {
   return a.position == b.position && a.grey == b.grey && a.depth_sigma_percent == b.depth_sigma_percent &&
          a.joined == b.joined;
@@ -78,10 +84,12 @@ Changes<Item> changes(const std::vector<Item>& items, const std::vector<Item>* b
 
 }  // namespace
 
-ViewedMap viewedMap(const Map& map, const Camera& camera, std::int64_t number) {
+ViewedMap viewedMap(const Map& map, int world, const Camera& camera, std::int64_t number) {
   ViewedMap viewed;
   viewed.number = number;
+  viewed.world = world;
   std::vector<MapPointRecord> points = mapPointRecords(map, camera);
+  keepWorld(points, world);
   viewed.points_in_map = points.size();
   points.erase(std::remove_if(points.begin(), points.end(),
                               [](const MapPointRecord& point) { return !point.position.cast<float>().allFinite(); }),
@@ -99,6 +107,7 @@ ViewedMap viewedMap(const Map& map, const Camera& camera, std::int64_t number) {
                              static_cast<std::uint8_t>(joined)});
   }
   std::vector<KeyframeRecord> keyframes = keyframeRecords(map);
+  keepWorld(keyframes, world);
   keyframes.erase(std::remove_if(keyframes.begin(), keyframes.end(),
                                  [](const KeyframeRecord& keyframe) { return !isFinite(keyframe.world_T_camera); }),
                   keyframes.end());
@@ -116,6 +125,7 @@ std::string mapMessage(const ViewedMap& map, const ViewedMap* before) {
   const Changes<ViewedPoint> points = changes(map.points, before ? &before->points : nullptr);
   const Changes<ViewedKeyframe> keyframes = changes(map.keyframes, before ? &before->keyframes : nullptr);
   std::string message = beginBinary(ViewMessage::map, {{"number", map.number},
+                                                       {"world", map.world},
                                                        {"after", before ? before->number : 0},
                                                        {"points", map.points.size()},
                                                        {"points_in_map", map.points_in_map},

@@ -27,10 +27,11 @@ struct ViewedKeyframe {
 };
 
 struct ViewedMap {
-  std::int64_t number = 0;          // over 0, another for every map
+  std::int64_t number = 0;  // over 0, another for every map
+  int world = 0;
   std::vector<ViewedPoint> points;  // along the edges
   std::vector<ViewedKeyframe> keyframes;
-  std::size_t points_in_map = 0, keyframes_in_map = 0;
+  std::size_t points_in_map = 0, keyframes_in_map = 0;  // of this world
 };
 
 using SharedMap = std::shared_ptr<const ViewedMap>;
@@ -38,9 +39,9 @@ using SharedMap = std::shared_ptr<const ViewedMap>;
 constexpr std::size_t most_viewed_points = 20000;
 constexpr std::size_t most_viewed_keyframes = 2000;
 
-// At most most_viewed_points of the map's points and most_viewed_keyframes, spread evenly, and the same ones as long as
-// the map does not grow; what is not finite is left out.
-ViewedMap viewedMap(const Map& map, const Camera& camera, std::int64_t number);
+// One world of the map: at most most_viewed_points of the map's points and most_viewed_keyframes, spread evenly, and
+// the same ones as long as the map does not grow; what is not finite is left out.
+ViewedMap viewedMap(const Map& map, int world, const Camera& camera, std::int64_t number);
 
 // ViewMessage::map: `map` for a client that was last sent `before`, or nothing yet (null).
 std::string mapMessage(const ViewedMap& map, const ViewedMap* before);

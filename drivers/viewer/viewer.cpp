@@ -75,8 +75,8 @@ void Viewer::status(const PublisherStatus& status, const ScaleState& scale, cons
   work_->show();
 }
 
-void Viewer::map(std::shared_ptr<const Map> map) {
-  work_->feed.maps.writing() = std::move(map);
+void Viewer::map(std::shared_ptr<const Map> map, int world) {
+  work_->feed.maps.writing() = {std::move(map), world};
   work_->feed.maps.publish();
 }
 

@@ -37,7 +37,8 @@ class Viewer {
   void frame(const FrameResult& result);
   // Each second, and after what changes it.
   void status(const PublisherStatus& status, const ScaleState& scale, const std::string& lcm_problem);
-  void map(std::shared_ptr<const Map> map);
+  // Shown of it is this world alone.
+  void map(std::shared_ptr<const Map> map, int world);
   // A line for the person who looks on, until the next; empty: none.
   void note(const std::string& text);
 

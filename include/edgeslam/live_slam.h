@@ -16,7 +16,7 @@ struct LiveCounters {
   std::int64_t handed_over = 0;
   std::int64_t processed = 0;
   std::int64_t passed_over = 0;  // a newer frame was there first
-  std::size_t keyframes = 0;     // of the map now
+  std::size_t keyframes = 0;     // of the map now, in all worlds
   std::size_t points = 0;
 };
 
@@ -48,7 +48,7 @@ class EDGESLAM_PUBLIC LiveSlam {
 
   // No frame follows. Waits until mapping has come to its end.
   void stop();
-  // After stop().
+  // After stop(). Of all worlds.
   std::vector<MapEdgePoint> map() const;
   // After stop(). Whole or not at all. Throws InputError where it cannot be written, or there is no map.
   void saveMap(const std::string& map_file) const;

@@ -41,7 +41,7 @@ class EDGESLAM_PUBLIC Slam {
 
   // What happened to the map since this was last asked: recoveries, relocalisations, loops, a line each.
   std::vector<std::string> takeEvents();
-  // As of now.
+  // As of now, of all worlds.
   std::vector<MapEdgePoint> map() const;
   std::vector<TimedCameraPose> keyframes() const;
   // Whole or not at all. Throws InputError where it cannot be written, or there is no map yet.

@@ -2,6 +2,11 @@
 //
 // Frames of reference: the camera's is x right, y down, z forward; the world is the camera's at the map's first
 // keyframe. Lengths are in map units: one camera cannot know the scale. Rotations are unit quaternions (w, x, y, z).
+//
+// Worlds: where the camera is lost in a place not seen before, a new map is begun beside the old one. It is a world of
+// its own, with its own frame of reference and its own unit, until both are found to be of the same place: the later
+// one is then joined to the earlier. Worlds are counted from 0. Poses and points go together only where `world` is the
+// same.
 #pragma once
 
 #include <array>
@@ -41,6 +46,7 @@ struct PosedFrame {
   SlamState state = SlamState::initialising;
   std::string reason;  // why it is not `tracking`; empty otherwise
   bool has_pose = false;
+  int world = -1;  // that the pose is in; -1: there is none
   CameraPose pose;
   // Of a small motion [translation; rotation vector [rad]] of the camera in its own frame, row by row.
   std::array<double, 36> covariance{};
@@ -57,6 +63,7 @@ struct PosedFrame {
 struct TimedCameraPose {
   std::int64_t time_ns = 0;
   CameraPose pose;
+  int world = 0;  // that the pose is in
 };
 
 // A point on an image edge.
@@ -66,6 +73,7 @@ struct MapEdgePoint {
   std::array<float, 3> edge_direction{};  // world, unit; zero for a corner-like point
   float depth_sigma_share = 0;            // standard deviation of its depth over the depth
   std::uint8_t grey = 0;                  // of the image there
+  int world = 0;                          // that it is in
 };
 
 }  // namespace edgeslam

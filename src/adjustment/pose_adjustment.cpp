@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "adjustment/reprojection.h"
 
@@ -144,6 +145,7 @@ bool judge(const Camera& camera, const PreparedObservations& observations, const
     Eigen::Vector2d residual;
     Matrix26d jacobian;
     if (!poseResidual(camera, observations[i].measured, frame, observations[i].point, residual, &jacobian)) continue;
+    result.errors_across[i] = residual.x();
     const double norm = residual.norm();
     if (!(norm <= options.outlier)) continue;
     result.inliers[i] = 1;
@@ -194,6 +196,7 @@ PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, 
   PoseResult result(memory);
   result.world_T_camera = initial_world_T_camera;
   result.inliers.assign(observations.size(), 0);
+  result.errors_across.assign(observations.size(), std::numeric_limits<double>::infinity());
   if (observations.empty() || static_cast<int>(observations.size()) < options.fewest) return result;
   const PreparedObservations prepared = prepare(observations, memory);
   Pose pose = initial_world_T_camera;

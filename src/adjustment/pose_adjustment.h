@@ -42,7 +42,8 @@ struct PoseOptions {
 };
 
 struct PoseResult {
-  explicit PoseResult(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : inliers(memory) {}
+  explicit PoseResult(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : inliers(memory), errors_across(memory) {}
 
   // False: too few observations or inliers, or the normal equations are singular. The pose is the start's then.
   bool converged = false;
@@ -53,7 +54,8 @@ struct PoseResult {
   Matrix6d covariance = Matrix6d::Zero();
   std::pmr::vector<char> inliers;  // one an observation
   int inlier_count = 0;
-  double rms = 0;  // of the inliers' whitened residual norms
+  std::pmr::vector<double> errors_across;  // whitened, across its edge; one an observation, infinite behind the camera
+  double rms = 0;                          // of the inliers' whitened residual norms
 };
 
 // Observations behind the camera, or with values that are not finite, count as outliers. `memory` serves the result and

@@ -1,6 +1,8 @@
 #include "app/evaluate_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -8,6 +10,7 @@
 
 #include "files/atomic_file.h"
 #include "files/format_text.h"
+#include "files/text_file.h"
 
 namespace edgeslam {
 namespace {
@@ -48,6 +51,39 @@ nlohmann::ordered_json toJson(const ErrorStatistics& values, double factor = 1) 
           {"min", factor * values.min},       {"max", factor * values.max}};
 }
 
+// "trajectory_map1.txt" and on, beside "trajectory.txt": what a run leaves of maps that were not joined.
+struct OtherWorlds {
+  int count = 0;
+  Trajectory poses;  // of all, by time
+};
+
+OtherWorlds otherWorldsOf(const std::string& estimate_path) {
+  namespace fs = std::filesystem;
+  const fs::path path(estimate_path);
+  OtherWorlds others;
+  for (int number = 1;; ++number) {
+    const std::string name = path.stem().string() + "_map" + std::to_string(number) + path.extension().string();
+    std::error_code error;
+    if (!fs::is_regular_file(path.parent_path() / name, error)) break;
+    ++others.count;
+    const std::string file = (path.parent_path() / name).string();
+    if (readTextLines(file).empty()) continue;  // no pose was given out in it at the time
+    const Trajectory poses = readTrajectory(file);
+    others.poses.insert(others.poses.end(), poses.begin(), poses.end());
+  }
+  return others;
+}
+
+// The share of the reference's poses that have one in any map.
+double poseShareInAnyWorld(const Trajectory& estimate, const OtherWorlds& others, const Trajectory& reference,
+                           double tolerance_s) {
+  Trajectory all = estimate;
+  all.insert(all.end(), others.poses.begin(), others.poses.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [](const StampedPose& a, const StampedPose& b) { return a.time_ns < b.time_ns; });
+  return coverage(all, reference, tolerance_s).pose_share;
+}
+
 }  // namespace
 
 int runEvaluate(const EvaluateArguments& arguments) {
@@ -57,6 +93,8 @@ int runEvaluate(const EvaluateArguments& arguments) {
   const RelativeError relative =
       relativeError(estimate, reference, arguments.alignment, arguments.delta_s, arguments.tolerance_s);
   const Coverage covered = coverage(estimate, reference, arguments.tolerance_s);
+  const OtherWorlds others = otherWorldsOf(arguments.estimate_path);
+  const double in_any_world = poseShareInAnyWorld(estimate, others, reference, arguments.tolerance_s);
 
   if (!arguments.json_path.empty()) {
     nlohmann::ordered_json json;
@@ -75,7 +113,9 @@ int runEvaluate(const EvaluateArguments& arguments) {
                         {"time_share", covered.time_share},
                         {"pose_share", covered.pose_share},
                         {"pose_share_after_start", covered.pose_share_after_start},
-                        {"start_s", covered.start_s}};
+                        {"start_s", covered.start_s},
+                        {"maps", 1 + others.count},
+                        {"pose_share_in_any_map", in_any_world}};
     writeFileAtomically(arguments.json_path,
                         json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   }
@@ -95,6 +135,10 @@ int runEvaluate(const EvaluateArguments& arguments) {
             << fixed(100 * covered.pose_share, 1) << " % of its " << reference.size() << " poses ("
             << fixed(100 * covered.pose_share_after_start, 1) << " % from the first estimated pose on, which comes at "
             << fixed(covered.start_s, 3) << " s)\n";
+  if (others.count > 0) {
+    std::cout << "beside it " << others.count << " of maps that were not joined: " << fixed(100 * in_any_world, 1)
+              << " % of the reference's poses have one in any map\n";
+  }
   return 0;
 }
 

@@ -57,7 +57,7 @@ std::string describe(const pose_t& pose) {
 std::string describe(const state_t& state) {
   std::string text = line("#%lld t %.6f s, ", static_cast<long long>(state.sequence), seconds(state.utime)) +
                      stateText(state.state) + reasonText(state.reason);
-  if (state.has_pose) text += ", " + poseText(state.position, state.orientation);
+  if (state.has_pose) text += line(", world %d, ", state.world) + poseText(state.position, state.orientation);
   return text +
          line(", points %d of %d, latency %.1f ms, ", state.points_mapped, state.points_tracked, state.latency_ms) +
          scaleText(state.scale_state, state.scale, state.scale_sigma);
@@ -78,10 +78,10 @@ std::string describe(const status_t& status) {
   return line("#%lld ", static_cast<long long>(status.sequence)) + stateText(status.state) + reasonText(status.reason) +
          line(
              ", %.1f frames/s, %.1f poses/s, latency %.1f ms (99 %%: %.1f), dropped %lld, keyframes %d, points %d, "
-             "loops %d, %.0f MB, %.0f C, not sent %lld",
+             "maps %d, loops %d, %.0f MB, %.0f C, not sent %lld",
              status.frames_per_second, status.poses_per_second, status.latency_p50_ms, status.latency_p99_ms,
-             static_cast<long long>(status.frames_dropped), status.keyframes, status.points, status.loops,
-             1e-6 * static_cast<double>(status.memory_bytes), status.temperature_c,
+             static_cast<long long>(status.frames_dropped), status.keyframes, status.points, status.worlds,
+             status.loops, 1e-6 * static_cast<double>(status.memory_bytes), status.temperature_c,
              static_cast<long long>(status.messages_not_sent)) +
          (status.scale_reason.empty() ? "" : ", scale: " + messageText(status.scale_reason));
 }

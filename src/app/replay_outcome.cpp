@@ -6,26 +6,10 @@
 #include "edgeslam/input_error.h"
 #include "evaluation/evaluation.h"
 #include "report/report.h"
+#include "report/run_summary.h"
 
 namespace edgeslam {
 namespace {
-
-struct PosedFrames {
-  Trajectory trajectory;
-  std::size_t first = 0;  // the number of frames where none has a pose
-};
-
-PosedFrames posedFrames(const RunResult& result) {
-  PosedFrames posed;
-  posed.first = result.frames.size();
-  for (std::size_t i = 0; i < result.frames.size(); ++i) {
-    const FrameRecord& frame = result.frames[i];
-    if (!frame.has_final_pose) continue;
-    posed.first = std::min(posed.first, i);
-    posed.trajectory.push_back({frame.time_ns, frame.final_world_T_camera});
-  }
-  return posed;
-}
 
 void tellFrames(const RunResult& result) {
   const auto& frames = result.frames;
@@ -37,6 +21,20 @@ void tellFrames(const RunResult& result) {
     std::printf("%lld frames could not be read and were skipped\n", static_cast<long long>(result.unreadable_frames));
   if (result.dropped_frames > 0)
     std::printf("%lld frames were dropped, newer ones being there\n", static_cast<long long>(result.dropped_frames));
+}
+
+void tellPoses(const RunResult& result, const RunSummary& summary) {
+  if (summary.final_poses == 0) {
+    std::printf("no pose: %s\n", result.frames.empty() ? "no frame" : result.frames.back().reason.c_str());
+    return;
+  }
+  const WorldSummary& main = summary.worlds.front();
+  std::printf("map started by %s\n", result.initialisation.c_str());
+  std::printf("poses for %lld frames, %.1f %% from the first pose on; %lld keyframes, %lld map points\n",
+              static_cast<long long>(summary.final_poses), 100.0 * summary.coverage,
+              static_cast<long long>(main.keyframes), static_cast<long long>(main.map_points));
+  if (summary.worlds.size() > 1) std::printf("%s\n", worldsInWords(summary.worlds).c_str());
+  for (const std::string& event : result.events) std::printf("%s\n", event.c_str());
 }
 
 void tellError(const Trajectory& estimate, const Trajectory& ground_truth) {
@@ -53,23 +51,17 @@ void tellError(const Trajectory& estimate, const Trajectory& ground_truth) {
 
 void tellOutcome(const RunResult& result, const std::optional<Trajectory>& ground_truth, const std::string& output) {
   tellFrames(result);
-  const PosedFrames posed = posedFrames(result);
-  if (posed.trajectory.empty()) {
-    std::printf("no pose: %s\n", result.frames.empty() ? "no frame" : result.frames.back().reason.c_str());
-    return;
+  const RunSummary summary = summarise(result, std::nullopt);
+  tellPoses(result, summary);
+  if (summary.final_poses > 0) {
+    if (ground_truth) tellError(finalTrajectory(result, result.main_world), *ground_truth);
+    if (reportsAreBuiltIn()) {
+      std::printf("%s/report.html shows it all\n", output.c_str());
+    } else {
+      std::printf("results are in %s; this build makes no report.html\n", output.c_str());
+    }
   }
-  std::printf("map started by %s\n", result.initialisation.c_str());
-  const double share =
-      static_cast<double>(posed.trajectory.size()) / static_cast<double>(result.frames.size() - posed.first);
-  std::printf("poses for %zu frames, %.1f %% from the first pose on; %zu keyframes, %zu map points\n",
-              posed.trajectory.size(), 100.0 * share, result.keyframes.size(), result.map_points.size());
-  for (const std::string& event : result.events) std::printf("%s\n", event.c_str());
-  if (ground_truth) tellError(posed.trajectory, *ground_truth);
-  if (reportsAreBuiltIn()) {
-    std::printf("%s/report.html shows it all\n", output.c_str());
-  } else {
-    std::printf("results are in %s; this build makes no report.html\n", output.c_str());
-  }
+  if (!summary.recording_quality.empty()) std::printf("the recording: %s\n", summary.recording_quality.c_str());
 }
 
 }  // namespace edgeslam

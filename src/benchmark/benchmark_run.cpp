@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "benchmark/json_reader.h"
+#include "report/run_files.h"
 
 namespace edgeslam {
 namespace {
@@ -35,6 +36,11 @@ void prepareFolder(const std::string& folder) {
                            "keyframes.txt", "map.ply"}) {
     fs::remove(folder + "/" + name, error);
   }
+  std::vector<fs::path> of_other_worlds;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (isFileOfAnotherWorld(entry.path().filename().string())) of_other_worlds.push_back(entry.path());
+  }
+  for (const fs::path& path : of_other_worlds) fs::remove(path, error);
 }
 
 std::string logOf(const std::string& path) {

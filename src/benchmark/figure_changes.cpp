@@ -97,6 +97,10 @@ std::vector<FigureChange> figureChanges(const RunFigures& first, const RunFigure
               Wish::less);
   changes.add("Frames with a pose, from the first on", "%", 100 * first.coverage, 100 * second.coverage, Wish::more,
               0.001);
+  changes.add("Frames with a pose, of all", "%", 100 * posedShare(first), 100 * posedShare(second), Wish::more, 0.001);
+  changes.add("Frames with a pose in any map, of all", "%", 100 * posedShareInAnyWorld(first),
+              100 * posedShareInAnyWorld(second), Wish::more, 0.001);
+  count("Maps that were not joined", &RunFigures::worlds, Wish::less);
   changes.add("First pose after", "s", first.first_pose_s, second.first_pose_s, Wish::less);
   changes.add("First live pose after", "s", first.first_live_pose_s, second.first_live_pose_s, Wish::less);
   changes.add("Frames lost", "", framesIn(first, "lost"), framesIn(second, "lost"), Wish::less, 0);

@@ -67,6 +67,7 @@ class CsvRows {
 struct Columns {
   std::size_t index = 0, time = 0, state = 0, reason = 0;
   std::array<std::size_t, 7> pose{};         // x y z qx qy qz qw
+  std::optional<std::size_t> world;          // of that pose; none in tables of older versions
   std::vector<std::size_t> tracking_stages;  // their times
   std::size_t count = 0;
 };
@@ -86,6 +87,7 @@ Columns columnsOf(const std::vector<std::string>& heading, const std::string& pl
   for (std::size_t i = 0; i < values.size(); ++i) columns.pose[i] = find(std::string("final_") + values[i]);
   for (std::size_t i = 0; i < heading.size(); ++i) {
     const std::string& name = heading[i];
+    if (name == "final_world") columns.world = i;
     const bool is_time = name.size() > 3 && name.compare(name.size() - 3, 3, "_ms") == 0;
     if (is_time && name != "mapping_ms" && name != "places_ms") columns.tracking_stages.push_back(i);
   }
@@ -113,6 +115,25 @@ std::optional<Pose> poseIn(const std::vector<std::string>& fields, const Columns
   }
   pose.rotation.normalize();
   return pose;
+}
+
+// 0 where the table does not tell.
+std::int64_t worldIn(const std::vector<std::string>& fields, const Columns& columns, const std::string& place) {
+  if (!columns.world || fields[*columns.world].empty()) return 0;
+  const auto world = parseNanoseconds(fields[*columns.world]);
+  if (!world || *world < 0) throw InputError(place + "final_world: expected a whole number of 0 or more");
+  return *world;
+}
+
+// `worlds`: of each frame, where it has a pose. Of several with as many poses the earliest number is the main one.
+void keepMainWorld(const std::vector<std::int64_t>& worlds, std::vector<FrameRow>& frames) {
+  std::map<std::int64_t, std::int64_t> poses;
+  for (std::size_t i = 0; i < frames.size(); ++i) poses[worlds[i]] += frames[i].final_pose ? 1 : 0;
+  const auto main =
+      std::max_element(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (worlds[i] != main->first) frames[i].final_pose.reset();
+  }
 }
 
 FrameRow rowOf(const std::vector<std::string>& fields, const Columns& columns, const std::string& place) {
@@ -146,13 +167,16 @@ std::vector<FrameRow> readFrameTable(const std::string& folder) {
   if (!rows.next(fields)) throw InputError(path + ":1: expected a heading, but the file is empty");
   const Columns columns = columnsOf(fields, rows.place());
   std::vector<FrameRow> frames;
+  std::vector<std::int64_t> worlds;
   while (rows.next(fields)) {
     FrameRow row = rowOf(fields, columns, rows.place());
     if (!frames.empty() && (row.index <= frames.back().index || row.time_ns <= frames.back().time_ns)) {
       throw InputError(rows.place() + "index and time_s must increase");
     }
     frames.push_back(std::move(row));
+    worlds.push_back(worldIn(fields, columns, rows.place()));
   }
+  keepMainWorld(worlds, frames);
   return frames;
 }
 

@@ -86,6 +86,26 @@ void readTimes(const JsonReader& summary, RunFigures& run) {
   run.real_time_ratio = summary.number("real_time_ratio");
 }
 
+// Summaries of older versions know one world.
+void readWorlds(const JsonReader& summary, RunFigures& run) {
+  run.with_pose_in_any_world = run.with_pose;
+  if (!summary.has("worlds")) return;
+  run.worlds = static_cast<std::int64_t>(summary.array("worlds").size());
+  run.with_pose_in_any_world = 0;
+  for (std::size_t i = 0; i < summary.array("worlds").size(); ++i) {
+    const JsonReader world = summary.element("worlds", i);
+    const std::int64_t frames = world.count("frames_with_pose");
+    if (frames > run.frames - run.with_pose_in_any_world) {
+      world.fail("frames_with_pose", "at most frames.total, " + std::to_string(run.frames) + ", in all worlds");
+    }
+    run.with_pose_in_any_world += frames;
+  }
+}
+
+double shareOf(std::int64_t count, std::int64_t all) {
+  return all > 0 ? static_cast<double>(count) / static_cast<double>(all) : 0;
+}
+
 void readCounts(const JsonReader& summary, RunFigures& run) {
   const JsonReader frames = summary.object("frames");
   run.frames = frames.count("total");
@@ -117,6 +137,10 @@ void readDescription(const JsonReader& summary, RunFigures& run) {
 
 }  // namespace
 
+double posedShare(const RunFigures& run) { return shareOf(run.with_pose, run.frames); }
+
+double posedShareInAnyWorld(const RunFigures& run) { return shareOf(run.with_pose_in_any_world, run.frames); }
+
 const StageFigures* stageOf(const RunFigures& run, const std::string& name) {
   for (const StageFigures& stage : run.stages) {
     if (stage.name == name) return &stage;
@@ -131,6 +155,7 @@ RunFigures readRunFigures(const std::string& folder) {
   RunFigures run;
   readDescription(summary, run);
   readCounts(summary, run);
+  readWorlds(summary, run);
   readStates(summary, run);
   readLoops(summary, run);
   readErrors(summary, run);

@@ -39,6 +39,8 @@ struct RunFigures {
   std::int64_t frames = 0, unreadable = 0, dropped = 0, with_pose = 0, with_live_pose = 0;
   std::map<std::string, std::int64_t> states;  // frames in each
   double coverage = 0;                         // share of the frames from the first pose on
+  std::int64_t worlds = 1;                     // maps that were not joined; all other figures are of the main one
+  std::int64_t with_pose_in_any_world = 0;     // frames
   std::optional<double> first_pose_s, first_live_pose_s;
   std::int64_t keyframes = 0, map_points = 0, recoveries = 0, relocalisations = 0;
   std::vector<LoopFigures> loops;
@@ -47,6 +49,10 @@ struct RunFigures {
   std::vector<StageFigures> stages;  // in the order of a frame
   double recording_s = 0, wall_s = 0, real_time_ratio = 0;
 };
+
+// Shares of all frames: with a pose in the main world, and in any.
+double posedShare(const RunFigures& run);
+double posedShareInAnyWorld(const RunFigures& run);
 
 // The stage of that name, or null.
 const StageFigures* stageOf(const RunFigures& run, const std::string& name);

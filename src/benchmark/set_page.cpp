@@ -41,6 +41,9 @@ ordered_json figuresJson(const RunFigures& run) {
           {"live", errorJson(run.live)},
           {"keyframe_error", errorJson(run.at_keyframes)},
           {"coverage", run.coverage},
+          {"posed", posedShare(run)},
+          {"worlds", run.worlds},
+          {"posed_in_any_world", posedShareInAnyWorld(run)},
           {"first_pose_s", optionalJson(run.first_pose_s)},
           {"keyframes", run.keyframes},
           {"map_points", run.map_points},
@@ -88,6 +91,8 @@ std::string tableLine(const SetRun& run, std::size_t name_width) {
   line +=
       right(errorText(f, f.trajectory), 9) + right(errorText(f, f.live), 9) + right(errorText(f, f.at_keyframes), 14);
   line += right(published ? published->edge_slam : "", 10) + right(formatted("%.1f", 100 * f.coverage), 9);
+  line += right(formatted("%.1f", 100 * posedShare(f)), 9) + right(std::to_string(f.worlds), 6) +
+          right(formatted("%.1f", 100 * posedShareInAnyWorld(f)), 11);
   line += right(f.first_pose_s ? formatted("%.1f", *f.first_pose_s) : "-", 9);
   line += right(std::to_string(f.recoveries), 12) + right(std::to_string(f.relocalisations), 17) +
           right(std::to_string(f.loops.size()), 7);
@@ -151,7 +156,8 @@ std::string formatSetTable(const RunSet& set) {
   std::string heading = "sequence";
   heading.resize(width, ' ');
   std::string table = heading +
-                      " error cm  live cm  keyframes cm  paper cm  cover %  start s  recoveries  relocalisations" +
+                      " error cm  live cm  keyframes cm  paper cm  cover %  posed %  maps  any map %  start s  "
+                      "recoveries  relocalisations" +
                       "  loops  tracking  99 % ms  x real time\n";
   for (const SetRun& run : set.runs) table += tableLine(run, width);
   return table;

@@ -9,15 +9,18 @@ double sharpness(const cv::Mat& grey, const EdgeMap& edges) {
   return sum / static_cast<double>(grey.total());
 }
 
-bool isBlurred(BlurGate& gate, double frame_sharpness, const BlurGateOptions& options) {
-  const bool blurred = !(frame_sharpness > 0) || frame_sharpness < options.share_of_average * gate.average;
-  if (blurred) {
-    if (++gate.rejected_in_a_row >= options.longest_rejection) gate = {};
+bool isBlurred(BlurGate& gate, const FrameSharpness& frame, const BlurGateOptions& options) {
+  if (gate.rejected_since_ns >= 0) {
+    const double rejected_s = static_cast<double>(frame.time_ns - gate.rejected_since_ns) * 1e-9;
+    if (rejected_s >= options.longest_rejection_s) gate.average = 0;
+  }
+  if (!(frame.value > 0) || frame.value < options.share_of_average * gate.average) {
+    if (gate.rejected_since_ns < 0) gate.rejected_since_ns = frame.time_ns;
     return true;
   }
-  gate.rejected_in_a_row = 0;
-  gate.average = gate.average > 0 ? options.forgetting * gate.average + (1 - options.forgetting) * frame_sharpness
-                                  : frame_sharpness;
+  gate.rejected_since_ns = -1;
+  gate.average =
+      gate.average > 0 ? options.forgetting * gate.average + (1 - options.forgetting) * frame.value : frame.value;
   return false;
 }
 

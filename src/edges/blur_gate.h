@@ -5,6 +5,7 @@
 // steepness, both at once.
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
 
 #include "edges/edge_detection.h"
@@ -12,14 +13,19 @@
 namespace edgeslam {
 
 struct BlurGateOptions {
-  double share_of_average = 0.45;  // a frame whose sharpness falls below this share of the running average is blurred
-  double forgetting = 0.85;        // weight of the past in the running average, a frame
-  int longest_rejection = 15;      // after so many rejected frames in a row the average starts anew [frames]
+  double share_of_average = 0.45;    // a frame whose sharpness falls below this share of the running average is blurred
+  double forgetting = 0.85;          // weight of the past in the running average, a frame
+  double longest_rejection_s = 0.4;  // since the first rejected frame in a row: then the average starts anew [s]
 };
 
 struct BlurGate {
   double average = 0;  // running average of the sharpness of the accepted frames; 0 before the first one
-  int rejected_in_a_row = 0;
+  std::int64_t rejected_since_ns = -1;  // -1: the last frame was accepted
+};
+
+struct FrameSharpness {
+  std::int64_t time_ns = 0;
+  double value = 0;  // see sharpness()
 };
 
 // What an image is judged by: the gradients of its edge points, summed, over the number of the image's pixels
@@ -27,7 +33,7 @@ struct BlurGate {
 double sharpness(const cv::Mat& grey, const EdgeMap& edges);
 
 // True where the image is to be discarded; updates the gate. An image without edges always is; the first one with
-// edges, and the first after the longest rejection, never is.
-bool isBlurred(BlurGate& gate, double frame_sharpness, const BlurGateOptions& options);
+// edges, and the first after the longest rejection, never is: what stays is no blur, but another scene.
+bool isBlurred(BlurGate& gate, const FrameSharpness& frame, const BlurGateOptions& options);
 
 }  // namespace edgeslam

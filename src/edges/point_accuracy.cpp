@@ -10,6 +10,10 @@ PointAccuracy accuracyIn(const cv::Mat& grey, const PointAccuracyOptions& option
   return {options, std::max(0.0, gradientNoise(grey) - options.noise)};
 }
 
+double sigmaAcross(bool corner, const PointAccuracy& accuracy) {
+  return accuracy.noise_factor * (corner ? accuracy.options.sigma_corner : accuracy.options.sigma_edge);
+}
+
 bool isCornerLike(const Eigenvalues& values, const PointAccuracy& accuracy) {
   const auto noise = static_cast<float>(accuracy.excess_noise);
   const float l1 = values.l1 - noise, l2 = values.l2 - noise;

@@ -23,10 +23,14 @@ struct PointAccuracyOptions {
 struct PointAccuracy {
   PointAccuracyOptions options;
   double excess_noise = 0;  // what the image has more than the usual noise [grey^2/px^2]
+  double noise_factor = 1;  // how many times as far as presumed measurements err (tracking/measured_noise.h)
 };
 
 // Of the points of `grey` (CV_8U), whose noise is measured.
 PointAccuracy accuracyIn(const cv::Mat& grey, const PointAccuracyOptions& options);
+
+// Standard deviation of a measurement across its edge, or of a corner-like point across its stronger direction [px].
+double sigmaAcross(bool corner, const PointAccuracy& accuracy);
 
 // Whether a point with these eigenvalues of its structure tensor is known in every direction.
 bool isCornerLike(const Eigenvalues& values, const PointAccuracy& accuracy);

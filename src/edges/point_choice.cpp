@@ -26,7 +26,7 @@ ChosenPoint makePoint(const PointCandidate& candidate, const PointAccuracy& accu
   point.tensor = structureTensor(candidate.products);
   point.corner = candidate.corner;
   point.chain = candidate.chain;
-  point.sigma_normal = static_cast<float>(point.corner ? accuracy.options.sigma_corner : accuracy.options.sigma_edge);
+  point.sigma_normal = static_cast<float>(sigmaAcross(point.corner, accuracy));
   const float stretch = std::sqrt(std::max(1.0F, point.tensor.l1 / informativeL2(point.tensor.l2, accuracy)));
   point.sigma_tangent = std::min(point.sigma_normal * stretch, unknown_along);
   return point;

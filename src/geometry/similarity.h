@@ -23,6 +23,11 @@ struct Similarity {
   }
 };
 
+// A camera that a similarity moves along with its surroundings.
+inline Pose moved(const Similarity& new_S_old, const Pose& old_T_camera) {
+  return {(new_S_old.rotation * old_T_camera.rotation).normalized(), new_S_old * old_T_camera.translation};
+}
+
 // Least-squares similarity with to ~ scale * R * from + t. `with_scale` false keeps the scale at 1. Needs at least 3
 // points that do not lie on one line for a unique rotation; otherwise one of the best is returned, and a mere
 // translation where all points of a set coincide. Throws std::invalid_argument where sizes differ or are 0 or a point

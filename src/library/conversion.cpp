@@ -63,6 +63,9 @@ CameraPose publicPose(const Pose& world_T_camera) {
   return {{t.x(), t.y(), t.z()}, {q.w(), q.x(), q.y(), q.z()}};
 }
 
+// A pose whose world is not told is in the first.
+int publicWorld(int world) { return std::max(0, world); }
+
 PosedFrame publicFrame(const FrameResult& result) {
   PosedFrame frame;
   frame.index = result.index;
@@ -71,6 +74,7 @@ PosedFrame publicFrame(const FrameResult& result) {
   frame.reason = result.reason;
   frame.has_pose = result.has_pose;
   if (result.has_pose) {
+    frame.world = publicWorld(result.world);
     frame.pose = publicPose(result.world_T_camera);
     Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(frame.covariance.data()) = result.covariance;
   }
@@ -88,6 +92,7 @@ std::vector<MapEdgePoint> publicMap(const Map& map, const Camera& camera) {
     std::copy_n(record.edge_direction.cast<float>().eval().data(), 3, point.edge_direction.begin());
     point.depth_sigma_share = record.depth_sigma_ratio;
     point.grey = record.grey;
+    point.world = record.world;
     points.push_back(point);
   }
   return points;

@@ -21,6 +21,7 @@ cv::Mat checkedImage(const GreyImage& image, const Camera& camera, std::int64_t 
 void requireLater(std::int64_t time_ns, std::int64_t last_time_ns);
 
 CameraPose publicPose(const Pose& world_T_camera);
+int publicWorld(int world);  // of a pose
 PosedFrame publicFrame(const FrameResult& result);
 std::vector<MapEdgePoint> publicMap(const Map& map, const Camera& camera);
 // Throws InputError where the map is empty or cannot be written.

@@ -75,7 +75,7 @@ std::vector<MapEdgePoint> Slam::map() const { return publicMap(work_->run.map(),
 std::vector<TimedCameraPose> Slam::keyframes() const {
   std::vector<TimedCameraPose> keyframes;
   for (const KeyframeRecord& record : keyframeRecords(work_->run.map())) {
-    keyframes.push_back({record.time_ns, publicPose(record.world_T_camera)});
+    keyframes.push_back({record.time_ns, publicPose(record.world_T_camera), record.world});
   }
   return keyframes;
 }
@@ -89,7 +89,8 @@ std::vector<TimedCameraPose> Slam::finish() {
   work_->finished = true;
   std::vector<TimedCameraPose> trajectory;
   for (const FrameRecord& frame : work_->run.finish().frames) {
-    if (frame.has_final_pose) trajectory.push_back({frame.time_ns, publicPose(frame.final_world_T_camera)});
+    if (!frame.has_final_pose) continue;
+    trajectory.push_back({frame.time_ns, publicPose(frame.final_world_T_camera), publicWorld(frame.final_world)});
   }
   return trajectory;
 }

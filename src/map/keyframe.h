@@ -51,17 +51,20 @@ struct TrackedFrame {
   KeyframeId keyframe =
       -1;  // its number, of a lost frame the one that it gets if it is recovered; -1 for FrameKind::start
   const char* reason = "";  // which criterion made it a keyframe
+  double noise_factor = 1;  // how many times as far as presumed measurements in it err
+  int world = 0;            // that its pose is in, or, of a lost frame, that the last pose was in
 };
 
 struct Keyframe {
   KeyframeId id = 0;
+  int world = 0;  // that its pose is in: counted from 0 (map/worlds.h)
   std::int64_t frame_index = 0;
   std::int64_t time_ns = 0;
   Pose world_T_camera;
   std::vector<PointObservation> observations;  // sorted by point
   std::shared_ptr<const FrameImages> images;   // null for a keyframe that no point is hosted in
   std::string reason;
-  Matrix7d uncertainty = Matrix7d::Zero();  // against the first keyframe (mapping/map_uncertainty.h)
+  Matrix7d uncertainty = Matrix7d::Zero();  // against the world's first keyframe (mapping/map_uncertainty.h)
 };
 
 }  // namespace edgeslam

@@ -8,26 +8,28 @@
 namespace edgeslam {
 namespace {
 
-// How much longer lengths around the keyframe became: the median over the points that it sees; 1 where there are none.
-double scaleAround(const Map& before, const Map& after, KeyframeId keyframe) {
+// How much longer lengths around the keyframe became: the median over the points that it sees; `otherwise` where there
+// are none.
+double scaleAround(const Map& before, const Map& after, KeyframeId keyframe, double otherwise) {
   std::vector<double> ratios;
   for (const PointObservation& observation : before.keyframes[keyframe].observations) {
     const auto old_point = before.points.find(observation.point);
     const auto new_point = after.points.find(observation.point);
     if (old_point == before.points.end() || new_point == after.points.end()) continue;
+    if (before.keyframes[old_point->second.host].world != before.keyframes[keyframe].world) continue;
     const auto distance = [&](const Map& map, const MapPoint& point) {
       return (worldPosition(map, point) - map.keyframes[keyframe].world_T_camera.translation).norm();
     };
     const double old_distance = distance(before, old_point->second);
     if (old_distance > 0) ratios.push_back(distance(after, new_point->second) / old_distance);
   }
-  return ratios.empty() ? 1 : upperMedian(ratios);
+  return ratios.empty() ? otherwise : upperMedian(ratios);
 }
 
-Similarity moveOfLatest(const Map& before, const Map& after) {
+Similarity moveOfLatest(const Map& before, const Map& after, double scale_without_points) {
   const Pose& old_pose = before.keyframes.back().world_T_camera;
   const Pose& new_pose = after.keyframes.back().world_T_camera;
-  const double scale = scaleAround(before, after, before.keyframes.back().id);
+  const double scale = scaleAround(before, after, before.keyframes.back().id, scale_without_points);
   const Eigen::Quaterniond rotation = (new_pose.rotation * old_pose.rotation.conjugate()).normalized();
   return {scale, rotation, new_pose.translation - scale * (rotation * old_pose.translation)};
 }
@@ -62,7 +64,7 @@ void addView(const MapChange::View& view, Map& map) {
 
 }  // namespace
 
-MapChange changeOf(const Map& before, const Map& after) {
+MapChange changeOf(const Map& before, const Map& after, const std::optional<WorldJoin>& join) {
   MapChange change;
   if (before.keyframes.empty()) return change;
   for (const Keyframe& keyframe : after.keyframes) change.world_T_camera[keyframe.id] = keyframe.world_T_camera;
@@ -76,30 +78,35 @@ MapChange changeOf(const Map& before, const Map& after) {
     change.depths[id] = {now.host, now.inverse_depth, now.inverse_depth_sigma, point.inverse_depth / now.inverse_depth};
     compareViews(after, id, point, now, change);
   }
-  change.newer_S_world = moveOfLatest(before, after);
+  change.newer_world = before.keyframes.back().world;
+  const bool is_joined = join && join->from == change.newer_world;
+  change.newer_S_world = moveOfLatest(before, after, is_joined ? join->to_S_from.scale : 1);
+  change.join = join;
   return change;
 }
 
 void applyChange(const MapChange& change, Map& map) {
   if (change.empty()) return;
   const Similarity& move = change.newer_S_world;
-  for (Keyframe& keyframe : map.keyframes) {
-    const auto moved = change.world_T_camera.find(keyframe.id);
-    keyframe.world_T_camera = moved != change.world_T_camera.end()
-                                  ? moved->second
-                                  : Pose{(move.rotation * keyframe.world_T_camera.rotation).normalized(),
-                                         move * keyframe.world_T_camera.translation};
-  }
   for (auto& [id, point] : map.points) {
     const auto depth = change.depths.find(id);
     if (depth != change.depths.end() && depth->second.host == point.host) {
       point.inverse_depth = depth->second.inverse_depth;
       point.inverse_depth_sigma = depth->second.inverse_depth_sigma;
-    } else {
+    } else if (depth != change.depths.end() || map.keyframes[point.host].world == change.newer_world) {
       const double scale = depth != change.depths.end() ? depth->second.scale : move.scale;
       point.inverse_depth /= scale;
       point.inverse_depth_sigma /= scale;
     }
+  }
+  for (Keyframe& keyframe : map.keyframes) {
+    const auto corrected = change.world_T_camera.find(keyframe.id);
+    if (corrected != change.world_T_camera.end()) {
+      keyframe.world_T_camera = corrected->second;
+    } else if (keyframe.world == change.newer_world) {
+      keyframe.world_T_camera = moved(move, keyframe.world_T_camera);
+    }
+    if (change.join && keyframe.world == change.join->from) keyframe.world = change.join->to;
   }
   for (const PointId id : change.erased_points) map.points.erase(id);
   for (const auto& [id, keyframe] : change.erased_views) {

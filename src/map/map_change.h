@@ -3,11 +3,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "geometry/similarity.h"
 #include "map/map.h"
+#include "map/worlds.h"
 
 namespace edgeslam {
 
@@ -26,13 +28,16 @@ struct MapChange {
   std::vector<PointId> erased_points;
   std::vector<std::pair<PointId, KeyframeId>> erased_views;  // no longer in `seen_in`
   std::vector<View> added_views;                             // by point, then keyframe
-  Similarity newer_S_world;  // moves what is newer than the copy: as its latest keyframe moved
+  int newer_world = 0;                                       // the copy's latest keyframe was in ...
+  Similarity newer_S_world;                                  // ... and moves what is newer in that world as it moved
+  std::optional<WorldJoin> join;
 
   bool empty() const { return world_T_camera.empty(); }
 };
 
-// From a copy of the map before the correction to the same copy after it. Keyframes are neither made nor taken out.
-MapChange changeOf(const Map& before, const Map& after);
+// From a copy of the map before the correction to the same copy after it, in which the worlds of `join` are one.
+// Keyframes are neither made nor taken out.
+MapChange changeOf(const Map& before, const Map& after, const std::optional<WorldJoin>& join = std::nullopt);
 
 // Keyframes and points that are no longer there are passed over; what came since moves along with the latest keyframe
 // of the copy.

@@ -60,6 +60,7 @@ std::string imagesProblem(const Camera& camera, const FrameImages& images) {
 
 std::string keyframeProblem(const Camera& camera, const Keyframe& keyframe) {
   if (!isKeyframeId(keyframe.id)) return "numbers go from 0 to " + std::to_string(largest_keyframe_id);
+  if (keyframe.world < 0 || keyframe.world > largest_keyframe_id) return "there is no such world";
   if (!isCount(keyframe.frame_index) || !isTime(keyframe.time_ns)) return "its frame or time is out of range";
   if (!isUnit(keyframe.world_T_camera.rotation)) return "its rotation is no unit quaternion";
   const Eigen::Vector3d& position = keyframe.world_T_camera.translation;
@@ -100,6 +101,9 @@ std::string pointProblem(const Map& map, const MapPoint& point) {
   for (const KeyframeId id : point.seen_in) {
     const std::string problem = viewProblem(map, id, point.id);
     if (!problem.empty()) return "is seen in " + problem;
+    if (map.keyframes[id].world != map.keyframes[point.host].world) {
+      return "is seen in keyframe " + std::to_string(id) + ", which is of another world";
+    }
     if (id <= before || id == point.host) return "is seen in keyframe " + std::to_string(id) + " twice or out of order";
     before = id;
   }

@@ -17,8 +17,8 @@ std::string cameraProblem(const Camera& camera);
 
 // The first thing that is wrong with a map, in words that name keyframe and point. Numbers are finite, bearings,
 // normals and rotations of unit length, images of the camera's size, measured pixels in the image or its pyramid's
-// border, inverse depths positive. A point's host and all that it is seen in are in the map and have an observation of
-// it; the chain's keyframe may have been culled.
+// border, inverse depths positive. A point's host and all that it is seen in are in one world of the map and have an
+// observation of it; the chain's keyframe may have been culled.
 std::string mapProblem(const Camera& camera, const Map& map);
 
 }  // namespace edgeslam

@@ -14,6 +14,7 @@ namespace edgeslam {
 namespace {
 
 constexpr std::string_view magic("EDGESLAM MAP\r\n\x1a\n", 16);
+constexpr std::uint32_t version_with_worlds = 2;
 constexpr std::size_t header_size = 28, checksum_size = 4;
 constexpr std::string_view camera_section = "CAMR", keyframe_section = "KEYF", point_section = "PNTS";
 
@@ -31,10 +32,12 @@ void cameraFields(Stream& stream, CameraFields& camera) {
 }
 
 template <typename Stream, typename KeyframeFields>
-void keyframeFields(Stream& stream, KeyframeFields& keyframe) {
+void keyframeFields(Stream& stream, KeyframeFields& keyframe, std::uint32_t version) {
   auto& rotation = keyframe.world_T_camera.rotation.coeffs();  // x y z w
   auto& translation = keyframe.world_T_camera.translation;
-  stream(keyframe.id, keyframe.frame_index, keyframe.time_ns);
+  stream(keyframe.id);
+  if (version >= version_with_worlds) stream(keyframe.world);
+  stream(keyframe.frame_index, keyframe.time_ns);
   stream(rotation[3], rotation[0], rotation[1], rotation[2], translation[0], translation[1], translation[2]);
   stream(keyframe.reason);
 }
@@ -78,7 +81,7 @@ void writeImages(ByteWriter& writer, const FrameImages& images) {
 }
 
 void writeKeyframe(ByteWriter& writer, const Keyframe& keyframe) {
-  keyframeFields(writer, keyframe);
+  keyframeFields(writer, keyframe, map_format_version);
   writer.u64(keyframe.observations.size());
   for (const PointObservation& observation : keyframe.observations) observationFields(writer, observation);
   writer(keyframe.images != nullptr);
@@ -146,9 +149,9 @@ std::shared_ptr<const FrameImages> readImages(ByteReader& reader, cv::Size size)
   return images;
 }
 
-Keyframe readKeyframe(ByteReader& reader, cv::Size size) {
+Keyframe readKeyframe(ByteReader& reader, cv::Size size, std::uint32_t version) {
   Keyframe keyframe;
-  keyframeFields(reader, keyframe);
+  keyframeFields(reader, keyframe, version);
   keyframe.observations.resize(reader.count(observation_size));
   for (PointObservation& observation : keyframe.observations) observationFields(reader, observation);
   bool has_images = false;
@@ -182,10 +185,10 @@ Camera readCamera(ByteReader reader) {
   return camera;
 }
 
-void readKeyframes(ByteReader reader, cv::Size size, Map& map) {
+void readKeyframes(ByteReader reader, cv::Size size, std::uint32_t version, Map& map) {
   std::uint64_t image_bytes = 0;
   for (std::size_t left = reader.count(least_keyframe_size); left > 0; --left) {
-    Keyframe keyframe = readKeyframe(reader, size);
+    Keyframe keyframe = readKeyframe(reader, size, version);
     if (!map.keyframes.empty() && keyframe.id <= map.keyframes.back().id) {
       reader.fail("keyframe " + std::to_string(keyframe.id) + " comes after " +
                   std::to_string(map.keyframes.back().id));
@@ -208,8 +211,8 @@ void readPoints(ByteReader reader, Map& map) {
   reader.expectEnd();
 }
 
-// The payload of a file that is whole and of a version that this program reads.
-ByteReader openPayload(std::string_view bytes, const std::string& name) {
+// The payload of a file that is whole and of a version that this program reads, which `version` gets.
+ByteReader openPayload(std::string_view bytes, const std::string& name, std::uint32_t& version) {
   if (bytes.substr(0, magic.size()) != magic.substr(0, bytes.size())) {
     throw InputError(name + ": is not a map saved by edgeslam");
   }
@@ -217,7 +220,7 @@ ByteReader openPayload(std::string_view bytes, const std::string& name) {
     throw InputError(name + ": is cut off after " + std::to_string(bytes.size()) + " bytes");
   }
   ByteReader header(bytes, magic.size(), name);
-  const std::uint32_t version = header.u32();
+  version = header.u32();
   const std::uint64_t length = header.u64();
   const std::uint64_t found = bytes.size() - header_size - checksum_size;
   if (length != found) {
@@ -252,10 +255,11 @@ std::string encodeMap(const SavedMap& saved) {
 }
 
 SavedMap decodeMap(std::string_view bytes, const std::string& name) {
-  ByteReader payload = openPayload(bytes, name);
+  std::uint32_t version = 0;
+  ByteReader payload = openPayload(bytes, name, version);
   SavedMap saved;
   saved.camera = readCamera(openSection(payload, camera_section));
-  readKeyframes(openSection(payload, keyframe_section), {saved.camera.width, saved.camera.height}, saved.map);
+  readKeyframes(openSection(payload, keyframe_section), {saved.camera.width, saved.camera.height}, version, saved.map);
   readPoints(openSection(payload, point_section), saved.map);
   payload.expectEnd();
   const std::string problem = mapProblem(saved.camera, saved.map);

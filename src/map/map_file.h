@@ -1,7 +1,7 @@
 // The saved map: all of a map in one run of bytes, versioned and with a checksum, the same on every machine.
 //
 // Numbers are little endian: u32 u64 i32 i64, f64 (IEEE 754), flag (one byte, 0 or 1). A text and an image are a u64
-// length and so many bytes; a list is a u64 count and so many records. The layout of version 1:
+// length and so many bytes; a list is a u64 count and so many records. The layout of version 2:
 //
 //   "EDGESLAM MAP\r\n\x1a\n"   16 bytes
 //   version                    u32
@@ -11,7 +11,8 @@
 //
 //   CAMR   model u32 (0 pinhole with radial-tangential distortion, 1 Kannala-Brandt), width i32, height i32 [px],
 //          fx fy cx cy f64 [px], distortion 5 f64
-//   KEYF   list of keyframes, ids ascending: id i32, frame index i64, time i64 [ns], world_T_camera (rotation w x y z,
+//   KEYF   list of keyframes, ids ascending: id i32, world i32 (not in version 1: all are 0), frame index i64, time i64
+//   [ns], world_T_camera (rotation w x y z,
 //          translation x y z, f64), reason text (ASCII), list of observations (points ascending), has images flag;
 //          where 1: frame index i64 and time i64 [ns] of the images, pyramid levels i32, image (grey 8-bit PNG)
 //          observation: point i64, pixel x y f64, normal x y f64, sigma across and along the edge f64 [px], bearing
@@ -31,7 +32,7 @@
 
 namespace edgeslam {
 
-constexpr std::uint32_t map_format_version = 1;
+constexpr std::uint32_t map_format_version = 2;
 
 struct SavedMap {
   Camera camera;  // whose pixels the observations are

@@ -5,10 +5,8 @@ namespace edgeslam {
 void reserveForTracking(MapView& view) {
   constexpr std::size_t most_new_keyframes = 64, most_points_of_a_start = 1024, longest_text = 128;
   view.keyframes.reserve(view.keyframes.size() + most_new_keyframes);
-  if (!view.initialised) {
-    view.points.reserve(most_points_of_a_start);
-    view.waiting_for.reserve(longest_text);
-  }
+  view.points.reserve(std::max(view.points.size(), most_points_of_a_start));
+  view.waiting_for.reserve(longest_text);
 }
 
 MapView flatView(const TrackedFrame& first) {
@@ -24,10 +22,12 @@ void makeFlatView(const TrackedFrame& first, MapView& view) {
   view.points.clear();
   view.origin_frame = first.frame_index;
   view.waiting_for = "motion of the camera";
-  view.keyframes.push_back(ViewKeyframe());
+  view.latest_keyframe = first.keyframe;
+  view.keyframes.push_back({first.keyframe, Pose(), nullptr});
   for (const PointObservation& observation : first.observations) {
     ViewPoint point;
     point.id = observation.point;
+    point.host = first.keyframe;
     point.host_bearing = observation.bearing;
     point.inverse_depth = 1.0;
     point.inverse_depth_sigma = flat_start_sigma;

@@ -31,7 +31,9 @@ struct ViewKeyframe {
 
 struct MapView {
   std::uint64_t version = 0;
-  std::int64_t origin_frame = -1;  // frame of keyframe 0: a view of an attempt that was given up is told by it
+  int world = 0;                   // all of the view is of one
+  std::int64_t origin_frame = -1;  // of the latest start: a view of an attempt that was given up is told by it
+  KeyframeId latest_keyframe = 0;  // of all worlds
   bool initialised = false;        // false: a provisional, flat-depth map from the first frame; poses are not given out
   std::string waiting_for;         // why not, in words that a user understands
   KeyframeTable<ViewKeyframe> keyframes;
@@ -74,7 +76,8 @@ inline Eigen::Vector3d worldPosition(const MapView& view, const ViewPoint& point
 // keeps rotation and translation apart where a scene has lines only.
 constexpr double flat_start_sigma = 0.05;
 
-// A provisional map: every point of the first frame at the distance 1 (design, section 5: initialisation).
+// A provisional map: every point of the first frame, whose keyframe number is its role's, at the distance 1 (design,
+// section 5: initialisation).
 MapView flatView(const TrackedFrame& first);
 
 // Gives a view memory for what tracking adds to it until the next one comes: keyframes, or the points of a new start.

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <iterator>
 
+#include "map/worlds.h"
+
 namespace edgeslam {
 namespace {
 
@@ -62,15 +64,36 @@ CulledKeyframe takeOut(KeyframeId id, Map& map, Candidates& candidates) {
     views.erase(std::remove(views.begin(), views.end(), id), views.end());
     candidate = views.empty() ? candidates.erase(candidate) : std::next(candidate);
   }
-  const Keyframe& kept = map.keyframes.atPlace(map.keyframes.placeOf(id) - 1);
-  const CulledKeyframe culled{id, kept.id, kept.world_T_camera.inverse() * keyframe.world_T_camera};
+  const Keyframe& kept = map.keyframes[keyframeBefore(map, id)];
+  const CulledKeyframe culled{id, kept.id, kept.world_T_camera.inverse() * keyframe.world_T_camera, kept.world};
   map.keyframes.erase(id);
   return culled;
 }
 
 bool mayGo(const CullingOptions& options, const Map& map, KeyframeId id) {
   const auto place = map.keyframes.placeOf(id);
-  return place > 0 && place + static_cast<std::size_t>(options.recent_keyframes) < map.keyframes.size();
+  return keyframeBefore(map, id) >= 0 &&
+         place + static_cast<std::size_t>(options.recent_keyframes) < map.keyframes.size();
+}
+
+// The smallest of those that the camera is not in, if it is small; or -1.
+int leastUsefulWorld(const CullingOptions& options, const Map& map) {
+  int least = -1;
+  auto fewest = static_cast<std::size_t>(options.small_world_keyframes) + 1;
+  for (const int world : worldsOf(map)) {
+    const std::size_t keyframes = keyframesOf(map, world).size();
+    if (world == map.keyframes.back().world || keyframes >= fewest) continue;
+    least = world;
+    fewest = keyframes;
+  }
+  return least;
+}
+
+void takeOutWorld(int world, Map& map, std::vector<CulledKeyframe>& culled) {
+  for (const KeyframeId id : keyframesOf(map, world)) {
+    culled.push_back({id, -1, map.keyframes[id].world_T_camera, world});
+  }
+  forgetWorld(map, world);
 }
 
 // Those around the latest keyframe, where views are added.
@@ -130,6 +153,11 @@ std::vector<CulledKeyframe> cullKeyframes(const CullingOptions& options, Map& ma
     culled.push_back(takeOut(id, map, candidates));
   }
   while (overBounds(options, map)) {
+    const int world = leastUsefulWorld(options, map);
+    if (world >= 0) {
+      takeOutWorld(world, map, culled);
+      continue;
+    }
     const KeyframeId id = leastNeeded(options, map);
     if (id < 0) break;
     culled.push_back(takeOut(id, map, candidates));

@@ -10,9 +10,9 @@ struct GlobalAdjustmentOptions {
   BundleOptions bundle{10, 2.0};
 };
 
-// Adjusts the whole map; takes out outliers and points that lost their depth, as `local` says. Keyframe 0 stays where
-// it is, and the keyframe farthest from it keeps its distance. False where the solver failed or there are fewer than 2
-// keyframes, or where `interrupted` became true (the map is then as it was).
+// Adjusts all of the latest keyframe's world; takes out outliers and points that lost their depth, as `local` says. Its
+// first keyframe stays where it is, and the keyframe farthest from that keeps its distance. False where the solver
+// failed or there are fewer than 2 keyframes, or where `interrupted` became true (the map is then as it was).
 bool adjustGlobally(const Camera& camera, const GlobalAdjustmentOptions& options, const LocalAdjustmentOptions& local,
                     Map& map, const std::atomic<bool>* interrupted = nullptr);
 

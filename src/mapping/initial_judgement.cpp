@@ -35,6 +35,7 @@ InitialEvidence judgeInitialStructure(const InitialFrames& frames, const Initial
   constexpr double degrees_a_radian = 180.0 / M_PI;
   assert(!structure.first_T_camera.empty());
   InitialEvidence evidence;
+  evidence.frames = static_cast<int>(frames.since.size());
   std::vector<QualityPoint> quality_points;
   std::vector<double> angles_deg;
   const Eigen::Vector3d current_centre = structure.first_T_camera.back().translation;
@@ -58,9 +59,11 @@ std::string reasonToWait(const InitialEvidence& evidence, const InitialisationOp
   if (evidence.parallax_deg < options.least_parallax_deg) {
     return "too little parallax (" + shortNumber(evidence.parallax_deg) + " deg)";
   }
-  const double enough = std::min<double>(options.fewest_points, options.point_share * evidence.followed);
+  const bool is_early = evidence.frames < options.attempt_interval;
+  const double of_those_followed = std::min<double>(options.fewest_points, options.point_share * evidence.followed);
+  const double enough = is_early ? std::max<double>(options.early_points, of_those_followed) : of_those_followed;
   if (evidence.points < enough) return "too few points with a good depth (" + std::to_string(evidence.points) + ")";
-  if (evidence.quality.share() < options.least_quality) {
+  if (evidence.quality.share() < (is_early ? options.early_quality : options.least_quality)) {
     return "quality too low (" + std::to_string(evidence.quality.kept) + " of " +
            std::to_string(evidence.quality.pieces) + " edge pieces hold)";
   }

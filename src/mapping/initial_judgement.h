@@ -15,6 +15,7 @@ double displacementLessRotation(const Camera& camera, const InitialFrames& frame
 
 // What speaks for a structure, over the first frame's points that the current frame sees.
 struct InitialEvidence {
+  int frames = 0;           // since the first
   int followed = 0;         // all of them
   int points = 0;           // those whose depth is known well enough
   double parallax_deg = 0;  // median angle under which these see the two cameras

@@ -6,9 +6,9 @@
 namespace edgeslam {
 namespace {
 
-void addKeyframe(const TrackedFrame& frame, const Pose& pose, const char* reason, Map& map) {
+void addKeyframe(const TrackedFrame& frame, KeyframeId id, const Pose& pose, const char* reason, Map& map) {
   Keyframe keyframe;
-  keyframe.id = static_cast<KeyframeId>(map.keyframes.size());
+  keyframe.id = id;
   keyframe.frame_index = frame.frame_index;
   keyframe.time_ns = frame.time_ns;
   keyframe.world_T_camera = pose;
@@ -22,15 +22,18 @@ void addKeyframe(const TrackedFrame& frame, const Pose& pose, const char* reason
 
 Map initialMap(const InitialFrames& frames, const InitialStructure& structure, double largest_depth_sigma) {
   Map map;
-  addKeyframe(frames.first, Pose(), "first", map);
+  const KeyframeId first_id = frames.first.keyframe;
+  KeyframeId id = first_id;
+  addKeyframe(frames.first, id, Pose(), "first", map);
   for (std::size_t k = 0; k < structure.frames.size(); ++k) {
-    addKeyframe(frames.since[structure.frames[k]], structure.first_T_camera[k], "initialisation", map);
+    addKeyframe(frames.since[structure.frames[k]], ++id, structure.first_T_camera[k], "initialisation", map);
   }
   for (std::size_t i = 0; i < frames.first.observations.size(); ++i) {
     if (!structure.isKnown(i, largest_depth_sigma)) continue;
     const PointObservation& first = frames.first.observations[i];
     MapPoint point;
     point.id = first.point;
+    point.host = point.chain_keyframe = first_id;
     point.host_bearing = first.bearing;
     point.inverse_depth = structure.inverse_depths[i];
     point.inverse_depth_sigma = structure.depth_sigmas[i];
@@ -38,7 +41,7 @@ Map initialMap(const InitialFrames& frames, const InitialStructure& structure, d
     point.chain = first.chain;
     point.order = first.order;
     for (const Keyframe& keyframe : map.keyframes) {
-      if (keyframe.id > 0 && findObservation(keyframe, point.id)) point.seen_in.push_back(keyframe.id);
+      if (keyframe.id > first_id && findObservation(keyframe, point.id)) point.seen_in.push_back(keyframe.id);
     }
     if (!point.seen_in.empty()) map.points.emplace(point.id, point);
   }

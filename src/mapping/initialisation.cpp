@@ -17,7 +17,7 @@ void Initialisation::start(const TrackedFrame& first) {
 bool Initialisation::add(const TrackedFrame& frame) {
   changed_ = false;
   addFrame(frames_, frame);
-  if (frames_.since.size() % static_cast<std::size_t>(options_.attempt_interval) != 0) return false;
+  if (!isDue()) return false;
 
   // P13: the first frame and this one are apart.
   if (displacementLessRotation(camera_, frames_) < options_.least_displacement_px) {
@@ -46,6 +46,15 @@ bool Initialisation::add(const TrackedFrame& frame) {
   description_ = describe(*structure, evidence);
   accepted_ = std::move(*structure);
   return true;
+}
+
+// Where the points fade soon there may be no other frame to try.
+bool Initialisation::isDue() const {
+  if (static_cast<int>(frames_.since.size()) < options_.fewest_frames) return false;
+  const auto points = static_cast<double>(frames_.first.observations.size());
+  const auto left = static_cast<double>(frames_.current().observations.size());
+  if (left < options_.fading_share * points) return true;
+  return frames_.since.size() % static_cast<std::size_t>(options_.attempt_interval) == 0;
 }
 
 std::optional<InitialStructure> Initialisation::adjusted(InitialStart start) const {

@@ -44,6 +44,7 @@ class Initialisation {
   std::vector<std::pair<std::int64_t, Pose>> earlyPoses() const;
 
  private:
+  bool isDue() const;
   std::optional<InitialStructure> adjusted(InitialStart start) const;
   InitialStructure bestOf(InitialStructure best, std::vector<InitialStart> rivals) const;
   InitialEvidence judge(const InitialStructure& structure) const;

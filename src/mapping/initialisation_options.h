@@ -7,8 +7,11 @@
 namespace edgeslam {
 
 struct InitialisationOptions {
-  int frames_between = 8;             // frames adjusted between the first and the current one
-  int attempt_interval = 5;           // frames from one attempt to the next
+  int frames_between = 8;     // frames adjusted between the first and the current one
+  int attempt_interval = 5;   // frames from one attempt to the next ...
+  double fading_share = 0.6;  // ... or one, where less than this share of the first frame's points is left
+  // Frames after the first: with fewer, depths of edge points make any motion fit.
+  int fewest_frames = 2;
   double least_displacement_px = 3;   // median motion in the image, less what a rotation explains, to begin with [px]
   double least_parallax_deg = 1.0;    // median angle under which the points see the two cameras [deg]
   double prior_sigma = 0.5;           // of the inverse depth around 1
@@ -18,6 +21,10 @@ struct InitialisationOptions {
   double outlier = 3.0;               // whitened error of an observation
   int five_point_corners = 50;        // corner-like points from which on the five-point start is tried as well
   double least_quality = 0.6;         // share of the pieces that must hold (P15)
+  // Of a start from fewer frames than from one attempt to the next; little speaks against such a one, so more must for
+  // it.
+  double early_quality = 0.75;
+  int early_points = 60;  // that must count, however few are followed
   QualityOptions quality;
   BundleOptions bundle{20, 2.0};
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "map/worlds.h"
+
 namespace edgeslam {
 namespace {
 
@@ -106,11 +108,12 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   };
   std::vector<KeyframeId> ordered_free = free;
   std::sort(ordered_free.begin(), ordered_free.end());
-  // Keyframe 0 is the world's origin and never moves. With nothing else to hold it, the oldest keyframe holds the pose
-  // and the distance of the one farthest from it the scale.
+  // A world's first keyframe is its origin and never moves. With nothing else to hold it, the oldest keyframe holds the
+  // pose and the distance of the one farthest from it the scale.
   const bool hold_oldest = fixed.empty();
+  const KeyframeId origin = firstKeyframeOf(map, map.keyframes[ordered_free.front()].world);
   for (const KeyframeId keyframe : ordered_free) {
-    addCamera(keyframe, keyframe == 0 || (hold_oldest && keyframe == ordered_free.front()));
+    addCamera(keyframe, keyframe == origin || (hold_oldest && keyframe == ordered_free.front()));
   }
   const std::vector<PointId> points = pointsSeenBy(map, camera_of);
   for (const KeyframeId keyframe : fixed) addCamera(keyframe, true);

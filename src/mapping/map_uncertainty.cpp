@@ -8,6 +8,7 @@
 
 #include "adjustment/pose_adjustment.h"
 #include "geometry/median.h"
+#include "map/worlds.h"
 
 namespace edgeslam {
 namespace {
@@ -115,32 +116,18 @@ std::vector<std::vector<KeyframeId>> links(const MapUncertaintyOptions& options,
   return linked;
 }
 
-}  // namespace
-
-void addUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map) {
-  if (map.keyframes.size() < 2) return;
-  Keyframe& latest = map.keyframes.back();
-  latest.uncertainty = unknownFrom(map, latest, map.keyframes.atPlace(map.keyframes.size() - 2).id);
-  for (const KeyframeId other : neighboursOf(options, map, latest.id)) {
-    const std::optional<Matrix7d> link = linkUncertainty(camera, options, map, latest, other);
-    if (!link) continue;
-    const Matrix7d found = through(map, latest, other, *link);
-    if (sizeOf(found) < sizeOf(latest.uncertainty)) latest.uncertainty = found;
-  }
-}
-
-// Dijkstra's shortest paths from the first keyframe.
-void renewUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map) {
+// Dijkstra's shortest paths from the world's first keyframe. `linked`: see links().
+void renewUncertaintyOf(const Camera& camera, const MapUncertaintyOptions& options,
+                        const std::vector<std::vector<KeyframeId>>& linked, int world, Map& map) {
   const double never = std::numeric_limits<double>::infinity();
   std::vector<double> best(numberOfKeyframes(map), never);
   std::vector<char> settled(numberOfKeyframes(map), 0);
   const auto at = [](KeyframeId id) { return static_cast<std::size_t>(id); };
-  const std::vector<std::vector<KeyframeId>> linked = links(options, map);
   KeyframeId last_settled = -1;
-  for (std::size_t count = 0; count < map.keyframes.size(); ++count) {
+  for (std::size_t count = keyframesOf(map, world).size(); count > 0; --count) {
     Keyframe* next = nullptr;
     for (Keyframe& keyframe : map.keyframes) {
-      if (settled[at(keyframe.id)]) continue;
+      if (settled[at(keyframe.id)] || keyframe.world != world) continue;
       if (!next || best[at(keyframe.id)] < best[at(next->id)]) next = &keyframe;
     }
     if (best[at(next->id)] == never) {  // the first one, or one that nothing ties to the others
@@ -159,6 +146,27 @@ void renewUncertainty(const Camera& camera, const MapUncertaintyOptions& options
       neighbour.uncertainty = found;
     }
   }
+}
+
+}  // namespace
+
+void addUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map) {
+  if (map.keyframes.empty()) return;
+  Keyframe& latest = map.keyframes.back();
+  const KeyframeId before = keyframeBefore(map, latest.id);
+  if (before < 0) return;
+  latest.uncertainty = unknownFrom(map, latest, before);
+  for (const KeyframeId other : neighboursOf(options, map, latest.id)) {
+    const std::optional<Matrix7d> link = linkUncertainty(camera, options, map, latest, other);
+    if (!link) continue;
+    const Matrix7d found = through(map, latest, other, *link);
+    if (sizeOf(found) < sizeOf(latest.uncertainty)) latest.uncertainty = found;
+  }
+}
+
+void renewUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map) {
+  const std::vector<std::vector<KeyframeId>> linked = links(options, map);
+  for (const int world : worldsOf(map)) renewUncertaintyOf(camera, options, linked, world, map);
 }
 
 }  // namespace edgeslam

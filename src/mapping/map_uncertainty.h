@@ -26,8 +26,8 @@ struct MapUncertaintyOptions {
 // Gives the latest keyframe its uncertainty, from the others'.
 void addUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map);
 
-// Gives every keyframe its uncertainty anew: after a loop was closed, or where the map was read from a file. The first
-// keyframe is the world's origin and its scale the map's unit, so that its own is 0.
+// Gives every keyframe its uncertainty anew: after a loop was closed, or where the map was read from a file. A world's
+// first keyframe is its origin and its scale the map's unit, so that its own is 0.
 void renewUncertainty(const Camera& camera, const MapUncertaintyOptions& options, Map& map);
 
 }  // namespace edgeslam

@@ -6,37 +6,48 @@ namespace edgeslam {
 
 void Mapper::goOnWith(Map map) {
   map_ = std::move(map);
-  description_ = "a saved map";
+  first_description_ = description_ = "a saved map";
   renewUncertainty(camera_, options_.uncertainty, map_);
   initialised_ = true;
+  world_ = map_.keyframes.back().world;
+  next_world_ = worldsOf(map_).back() + 1;
   ++version_;
 }
 
 bool Mapper::add(const TrackedFrame& frame) {
-  if (frame.kind == FrameKind::first) {
-    initialised_ = false;
-    map_ = Map();
-    candidates_.clear();
-    origin_frame_ = frame.frame_index;
-    initialisation_.start(frame);
-    return false;
-  }
-  if (initialised_) {
-    if (frame.kind == FrameKind::start) {  // was on its way when the map came to stand
-      const std::optional<Pose> pose = initialisation_.locate(frame, early_poses_.back().second);
-      if (pose) early_poses_.emplace_back(frame.frame_index, *pose);
+  switch (frame.kind) {
+    case FrameKind::first:
+      start(frame);
       return false;
-    }
-    addKeyframe(frame);
-    return true;
+    case FrameKind::start:
+      return goOnStarting(frame);
+    case FrameKind::keyframe:
+      return addKeyframe(frame);
+    case FrameKind::lost:
+      break;
+  }
+  return false;
+}
+
+void Mapper::start(const TrackedFrame& first) {
+  makeRoomFor(first.keyframe);
+  initialised_ = start_stood_ = false;
+  candidates_.clear();
+  origin_frame_ = first.frame_index;
+  initialisation_.start(first);
+}
+
+bool Mapper::goOnStarting(const TrackedFrame& frame) {
+  if (initialised_) {  // it was on its way when the map came to stand, or when an older world was found again
+    if (!start_stood_ || starts_.back().world != world_) return false;
+    auto& poses = starts_.back().poses;
+    const std::optional<Pose> pose = initialisation_.locate(frame, poses.back().second);
+    if (pose) poses.emplace_back(frame.frame_index, *pose);
+    return false;
   }
   const std::string waited_for = initialisation_.waitingFor();
   if (initialisation_.add(frame)) {
-    initialised_ = true;
-    map_ = initialisation_.map();
-    renewUncertainty(camera_, options_.uncertainty, map_);
-    description_ = initialisation_.description();
-    early_poses_ = initialisation_.earlyPoses();
+    stand();
   } else if (!initialisation_.changed() && initialisation_.waitingFor() == waited_for) {
     return false;
   }
@@ -44,12 +55,60 @@ bool Mapper::add(const TrackedFrame& frame) {
   return true;
 }
 
-void Mapper::addKeyframe(const TrackedFrame& frame) {
+void Mapper::stand() {
+  initialised_ = start_stood_ = true;
+  world_ = next_world_++;
+  Map begun = initialisation_.map();
+  renewUncertainty(camera_, options_.uncertainty, begun);
+  starts_.push_back({world_, begun.keyframes.front().id, 1, initialisation_.earlyPoses()});
+  for (Keyframe& keyframe : begun.keyframes) {
+    keyframe.world = world_;
+    map_.keyframes.push_back(std::move(keyframe));
+  }
+  map_.points.merge(begun.points);
+  description_ = initialisation_.description();
+  if (map_.keyframes.front().world == world_) first_description_ = description_;
+}
+
+// Tracking gives numbers that it has not seen: where they are taken, the latest start came to stand too late for it.
+void Mapper::makeRoomFor(KeyframeId keyframe) {
+  if (!start_stood_ || map_.keyframes.empty() || map_.keyframes.back().id < keyframe) return;
+  forgetFrom(map_, std::min(keyframe, starts_.back().origin));
+  next_world_ = starts_.back().world;
+  starts_.pop_back();
+  start_stood_ = false;
+  ++starts_given_up_;
+}
+
+void Mapper::goBackTo(KeyframeId keyframe) {
+  initialised_ = true;
+  world_ = map_.keyframes[keyframe].world;
+  candidates_.clear();
+  ++version_;
+}
+
+// What was tracked in a world that was joined to another meanwhile is there now.
+WorldPose Mapper::inWorldOfToday(WorldPose pose) const {
+  for (auto join = joins_.find(pose.world); join != joins_.end(); join = joins_.find(pose.world)) {
+    pose = {join->second.to, moved(join->second.to_S_from, pose.world_T_camera)};
+  }
+  return pose;
+}
+
+bool Mapper::addKeyframe(const TrackedFrame& frame) {
+  const auto [world, world_T_camera] = inWorldOfToday({frame.world, frame.world_T_camera});
+  if (!initialised_ || world_ != world) {
+    makeRoomFor(frame.keyframe);
+    const KeyframeId latest = latestKeyframeOf(map_, world);
+    if (latest < 0) return false;  // the world is gone: there was no room for it
+    goBackTo(latest);
+  }
   Keyframe keyframe;
   keyframe.id = std::max(frame.keyframe, map_.keyframes.back().id + 1);
+  keyframe.world = world;
   keyframe.frame_index = frame.frame_index;
   keyframe.time_ns = frame.time_ns;
-  keyframe.world_T_camera = frame.world_T_camera;
+  keyframe.world_T_camera = world_T_camera;
   keyframe.observations = frame.observations;
   keyframe.images = frame.images;
   keyframe.reason = frame.reason;
@@ -61,16 +120,19 @@ void Mapper::addKeyframe(const TrackedFrame& frame) {
   culled_.insert(culled_.end(), culled.begin(), culled.end());
   addUncertainty(camera_, options_.uncertainty, map_);
   ++version_;
+  return true;
 }
 
 RecoveryResult Mapper::recover(const TrackedFrame& lost) {
   RecoveryResult result;
-  if (!options_.recovery_enabled || !initialised_ || map_.keyframes.size() < 2) {
+  const KeyframeId last_id = initialised_ ? latestKeyframeOf(map_, world_) : -1;
+  const KeyframeId before = last_id >= 0 ? keyframeBefore(map_, last_id) : -1;
+  if (!options_.recovery_enabled || before < 0) {
     result.reason = "no map to go on from";
     return result;
   }
-  const Keyframe& last = map_.keyframes.back();
-  result = recoverTrackLoss(camera_, map_.keyframes.atPlace(map_.keyframes.size() - 2), last, lost, options_.recovery);
+  const Keyframe& last = map_.keyframes[last_id];
+  result = recoverTrackLoss(camera_, map_.keyframes[before], last, lost, options_.recovery);
   if (!result.found) return result;
   for (const RecoveredPoint& recovered : result.points) {
     MapPoint point;
@@ -87,6 +149,7 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
     candidates_.erase(recovered.id);
   }
   TrackedFrame found = lost;
+  found.world = world_;
   found.world_T_camera = result.world_T_camera;
   found.reason = "recovery";
   addKeyframe(found);
@@ -95,6 +158,15 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
 
 void Mapper::apply(const MapChange& change) {
   applyChange(change, map_);
+  if (change.join) {
+    joins_[change.join->from] = *change.join;
+    for (Start& start : starts_) {
+      if (start.world != change.join->from) continue;
+      start.world = change.join->to;
+      start.scale *= change.join->to_S_from.scale;
+    }
+    if (world_ == change.join->from) world_ = change.join->to;
+  }
   renewUncertainty(camera_, options_.uncertainty, map_);
   ++version_;
 }
@@ -102,7 +174,8 @@ void Mapper::apply(const MapChange& change) {
 MapView Mapper::view(KeyframeId centre) const {
   MapView view;
   if (initialised_) {
-    view = viewOfMap(map_, centre >= 0 ? centre : map_.keyframes.back().id, options_.view);
+    view = viewOfMap(map_, centre >= 0 ? centre : latestKeyframeOf(map_, world_), options_.view);
+    view.latest_keyframe = map_.keyframes.back().id;
   } else {
     initialisation_.writeProvisional(view);
     view.waiting_for = initialisation_.waitingFor();
@@ -114,10 +187,16 @@ MapView Mapper::view(KeyframeId centre) const {
   return view;
 }
 
-std::vector<std::pair<std::int64_t, Pose>> Mapper::earlyPoses() const {
-  if (map_.keyframes.empty()) return {};
-  auto poses = early_poses_;
-  for (auto& [frame, pose] : poses) pose = map_.keyframes.front().world_T_camera * pose;
+std::vector<EarlyPose> Mapper::earlyPoses() const {
+  std::vector<EarlyPose> poses;
+  for (const Start& start : starts_) {
+    const Keyframe* origin = map_.keyframes.find(start.origin);
+    if (!origin) continue;
+    for (const auto& [frame, origin_T_camera] : start.poses) {
+      const Pose scaled{origin_T_camera.rotation, start.scale * origin_T_camera.translation};
+      poses.push_back({frame, origin->world, origin->world_T_camera * scaled});
+    }
+  }
   return poses;
 }
 

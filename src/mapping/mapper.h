@@ -1,6 +1,7 @@
 // Mapping: every keyframe (section 3.4 of the paper). Owns the map; takes tracked frames, gives map views.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,6 +31,18 @@ struct MapperOptions {
   MapUncertaintyOptions uncertainty;
 };
 
+struct WorldPose {
+  int world = 0;
+  Pose world_T_camera;
+};
+
+// Of a frame before its map stood: in its world.
+struct EarlyPose {
+  std::int64_t frame_index = 0;
+  int world = 0;
+  Pose world_T_camera;
+};
+
 class Mapper {
  public:
   Mapper(const Camera& camera, const MapperOptions& options)
@@ -38,40 +51,69 @@ class Mapper {
   // Before the first frame: continues a map made earlier, of the same camera.
   void goOnWith(Map map);
 
-  // Takes over a frame. True where the map, or what it waits for, changed.
+  // Takes over a frame. True where the map, or what it waits for, changed. The first frame of a start begins a world
+  // beside those there are; one that tracking never followed, as it began anew meanwhile, is forgotten.
   bool add(const TrackedFrame& frame);
 
   // P21: the lost frame's tracks, all without pose, and the last two keyframes. Where it is found the frame becomes a
   // keyframe and its tracks map points; `view()` then shows it.
   RecoveryResult recover(const TrackedFrame& lost);
+  // Tracking is in this keyframe's world again; a start that was under way is given up.
+  void goBackTo(KeyframeId keyframe);
   // What was done to a copy of the map as a whole (P20, P27).
   void apply(const MapChange& change);
   // Keyframes taken out of the map since this was last asked, in that order.
   std::vector<CulledKeyframe> takeCulled() { return std::exchange(culled_, {}); }
-  // The map as tracking gets to see it; `centre` -1: around the latest keyframe.
+  // The world that tracking is in as tracking gets to see it; `centre` -1: around its latest keyframe.
   MapView view(KeyframeId centre = -1) const;
 
+  // The world that tracking is in stands.
   bool initialised() const { return initialised_; }
+  // Worlds that came to stand too late for tracking.
+  std::size_t startsGivenUp() const { return starts_given_up_; }
+  // That tracking is in, or was in before the start that is under way; -1 before the first one stood.
+  int world() const { return world_; }
+  // Of all worlds.
   const Map& map() const { return map_; }
-  // How the map came to be, in words.
-  const std::string& initialisationDescription() const { return description_; }
-  // Poses of the frames before the map stood: (frame index, world_T_camera with keyframe 0 as it is now).
-  std::vector<std::pair<std::int64_t, Pose>> earlyPoses() const;
+  // How the first world came to be, in words, and the latest.
+  const std::string& initialisationDescription() const { return first_description_; }
+  const std::string& latestDescription() const { return description_; }
+  // Where a pose is now that the world it was in may be part of another.
+  WorldPose inWorldOfToday(WorldPose pose) const;
+  // Poses of the frames before their maps stood, with the worlds as they are now.
+  std::vector<EarlyPose> earlyPoses() const;
 
  private:
-  void addKeyframe(const TrackedFrame& frame);
+  // The frames before a world stood.
+  struct Start {
+    int world = -1;
+    KeyframeId origin = -1;                            // the world's first keyframe
+    double scale = 1;                                  // of lengths since
+    std::vector<std::pair<std::int64_t, Pose>> poses;  // origin_T_camera
+  };
+
+  void start(const TrackedFrame& first);
+  bool goOnStarting(const TrackedFrame& frame);
+  void stand();
+  void makeRoomFor(KeyframeId keyframe);
+  bool addKeyframe(const TrackedFrame& frame);
 
   Camera camera_;
   MapperOptions options_;
   Initialisation initialisation_;
   Map map_;
   Candidates candidates_;
-  std::string description_;
+  std::string first_description_, description_;
   bool initialised_ = false;
+  bool start_stood_ = false;  // the latest one
+  int world_ = -1;
+  int next_world_ = 0;
+  std::size_t starts_given_up_ = 0;
   std::uint64_t version_ = 0;
-  std::int64_t origin_frame_ = -1;
+  std::int64_t origin_frame_ = -1;  // of the latest start
   std::vector<CulledKeyframe> culled_;
-  std::vector<std::pair<std::int64_t, Pose>> early_poses_;  // keyframe0_T_camera
+  std::vector<Start> starts_;       // of the worlds that stand
+  std::map<int, WorldJoin> joins_;  // by the younger world
 };
 
 }  // namespace edgeslam

@@ -263,7 +263,10 @@ Matrix6d covarianceOfLast(const Camera& camera, const std::vector<Track3>& track
 }  // namespace
 
 RecoveryResult recoverTrackLoss(const Camera& camera, const Keyframe& t_minus_2, const Keyframe& t_minus_1,
-                                const TrackedFrame& t, const RecoveryOptions& options) {
+                                const TrackedFrame& t, const RecoveryOptions& presumed) {
+  RecoveryOptions options = presumed;
+  options.epipolar_error *= t.noise_factor;
+  options.resectioning_error *= t.noise_factor;
   RecoveryResult result;
   const std::vector<Track3> tracks = commonTracks(t_minus_2, t_minus_1, t);
   result.tracks = static_cast<int>(tracks.size());

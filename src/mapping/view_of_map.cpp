@@ -27,6 +27,7 @@ std::vector<char> keyframesInView(const Map& map, KeyframeId centre, const ViewO
   std::vector<char> in_view(numberOfKeyframes(map), 0);
   std::vector<std::pair<double, KeyframeId>> near;
   for (const Keyframe& keyframe : map.keyframes) {
+    if (keyframe.world != latest.world) continue;
     if (keyframe.id <= latest.id && keyframe.id + options.latest_keyframes > latest.id) {
       in_view[static_cast<std::size_t>(keyframe.id)] = 1;
       continue;
@@ -65,7 +66,9 @@ void writeSource(const Map& map, const MapPoint& point, ViewPoint& view_point) {
 MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options) {
   assert(map.keyframes.contains(centre));
   MapView view;
+  view.world = map.keyframes[centre].world;
   for (const Keyframe& keyframe : map.keyframes) {
+    if (keyframe.world != view.world) continue;
     view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr, keyframe.uncertainty});
   }
   const std::vector<char> in_view = keyframesInView(map, centre, options);

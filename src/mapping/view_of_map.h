@@ -14,7 +14,8 @@ struct ViewOptions {
   double largest_distance = 0.7;  // between their centres and the latest one's, as a share of its median depth
 };
 
-// `centre`: the keyframe near which the camera is; the latest one, or the one against which it was found again.
+// Of the world of `centre`, the keyframe near which the camera is: the latest one, or the one against which it was
+// found again.
 MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options);
 
 }  // namespace edgeslam

@@ -94,8 +94,8 @@ void LiveMapping::sendReports() {
 void LiveMapping::countMap() {
   const Mapper& mapper = worker_.mapper();
   map_changes_.fetch_add(1, std::memory_order_relaxed);
-  keyframes_.store(mapper.initialised() ? mapper.map().keyframes.size() : 0, std::memory_order_relaxed);
-  points_.store(mapper.initialised() ? mapper.map().points.size() : 0, std::memory_order_relaxed);
+  keyframes_.store(mapper.map().keyframes.size(), std::memory_order_relaxed);
+  points_.store(mapper.map().points.size(), std::memory_order_relaxed);
 }
 
 // Asked for again where there is no room now.
@@ -105,7 +105,7 @@ void LiveMapping::reportMap() {
   map_asked_.store(false, std::memory_order_release);
   *sent = MappingReport();
   const Mapper& mapper = worker_.mapper();
-  sent->map = std::make_shared<const Map>(mapper.initialised() ? mapper.map() : Map());
+  sent->map = std::make_shared<const Map>(mapper.map());
   channels_.reports.send(sent);
   channels_.result_ready.post();
 }

@@ -32,6 +32,7 @@ std::vector<KeyframeRecord> keyframeRecords(const Map& map, KeyframeId first) {
     if (keyframe.id < first) continue;
     KeyframeRecord record;
     record.id = keyframe.id;
+    record.world = keyframe.world;
     record.frame_index = keyframe.frame_index;
     record.time_ns = keyframe.time_ns;
     record.world_T_camera = keyframe.world_T_camera;
@@ -54,6 +55,7 @@ std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera
     for (const MapPoint* point : points) {
       MapPointRecord record;
       record.id = point->id;
+      record.world = map.keyframes[point->host].world;
       record.position = worldPosition(map, *point);
       record.chain = chain_number;
       record.order = point->order;

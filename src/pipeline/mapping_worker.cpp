@@ -17,8 +17,16 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
     find(message);
     return nextUpdate();
   }
-  if (message.frame.kind == FrameKind::first) map_since_message_ = message.number;
-  if (!mapper_.add(message.frame)) return std::nullopt;
+  const std::size_t worlds_given_up = mapper_.startsGivenUp();
+  const bool was_initialised = mapper_.initialised();
+  const bool has_changed = mapper_.add(message.frame);
+  if (mapper_.startsGivenUp() > worlds_given_up) first_valid_message_ = message.number;
+  if (!has_changed) return std::nullopt;
+  if (message.frame.kind == FrameKind::start && mapper_.initialised() && !was_initialised && mapper_.world() > 0) {
+    report(last_frame_)
+        .events.push_back("map " + std::to_string(mapper_.world()) +
+                          " begins beside those before: " + mapper_.latestDescription());
+  }
   if (mapper_.initialised()) {
     new_keyframe_ = true;
     relocalisation_.update(mapper_.map());
@@ -30,7 +38,8 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
 
 // The frame's pose is lost: recovery by its tracks (P21), then the map as a whole (P22).
 void MappingWorker::find(const MappingMessage& message) {
-  if (!mapper_.initialised()) return;
+  const bool stands_meanwhile = message.starting && mapper_.initialised();
+  if (mapper_.map().keyframes.empty() || stands_meanwhile) return;
   if (message.recover && recover(message)) return;
   if (settings_.relocalisation_enabled) relocalise(message);
 }
@@ -52,10 +61,15 @@ void MappingWorker::relocalise(const MappingMessage& message) {
   const Map& map = mapper_.map();
   // What looks like a place out of reach is another place that looks the same.
   std::optional<Reachable> reachable;
-  if (message.last_good_pose) reachable = reachableFrom(map, *message.last_good_pose, message.seconds_since);
-  const RelocalisationResult result = relocalisation_.relocalise(map, *message.frame.images, *message.edges, reachable);
+  if (message.last_good_pose) {
+    const WorldPose last = mapper_.inWorldOfToday({message.frame.world, *message.last_good_pose});
+    reachable = reachableFrom(map, last.world_T_camera, message.seconds_since, last.world);
+  }
+  const RelocalisationResult result =
+      relocalisation_.relocalise(map, *message.frame.images, *message.edges, reachable, message.frame.noise_factor);
   not_found_ = result.reason;
   if (!result.found) return;
+  mapper_.goBackTo(result.keyframe);
   std::vector<FoundAgain> points;
   for (const MatchedPoint& match : result.matches) points.push_back({match.point, match.measurement, match.corner});
   goOnFrom(TrackingState::relocalised, result.keyframe, result.world_T_camera, result.pose.covariance,
@@ -71,15 +85,16 @@ void MappingWorker::goOnFrom(TrackingState how, KeyframeId reference, const Pose
   found_reference_T_camera_ = mapper_.map().keyframes[reference].world_T_camera.inverse() * world_T_camera;
   MappingReport& done = report(last_frame_);
   done.events.push_back(event);
-  done.found = {how, found_reference_, found_reference_T_camera_};
+  done.found = {how, found_reference_, found_reference_T_camera_, mapper_.world()};
 }
 
 std::optional<MapUpdate> MappingWorker::apply(const Correction& correction) {
-  if (correction.number < map_since_message_) return std::nullopt;  // of a map that was given up
+  if (correction.number < first_valid_message_) return std::nullopt;
   if (!correction.events.empty() || correction.loop) {
     MappingReport& done = report(last_frame_);
     done.events = correction.events;
     done.loop = correction.loop;
+    done.join = correction.change.join;
   }
   if (correction.change.empty()) return std::nullopt;
   mapper_.apply(correction.change);

@@ -51,9 +51,9 @@ class MappingWorker {
   Mapper mapper_;
   Relocalisation relocalisation_;
   std::int64_t last_message_ = -1;
-  std::int64_t last_frame_ = -1;        // of the last message
-  std::int64_t map_since_message_ = 0;  // that began this map
-  bool new_keyframe_ = false;           // by the last message
+  std::int64_t last_frame_ = -1;          // of the last message
+  std::int64_t first_valid_message_ = 0;  // what came of an earlier one is of keyframes that were given up
+  bool new_keyframe_ = false;             // by the last message
   // Of the last lost frame, until tracking sends another one or goes on: updates can be passed over.
   std::optional<FoundFrame> found_;
   KeyframeId found_reference_ = -1;

@@ -26,6 +26,7 @@ struct MappingMessage {
   std::optional<Pose> last_good_pose;  // none before the first
   double seconds_since = 0;            // the last good pose
   bool recover = false;                // its tracks run through the last keyframes: P21 before P22
+  bool starting = false;               // a world is begun beside those in which it is looked for
   std::int64_t sent_ns = 0;            // steady clock; for statistics alone
 };
 
@@ -86,12 +87,14 @@ struct MappingReport {
     TrackingState how = TrackingState::relocalised;
     KeyframeId reference = -1;  // the keyframe that carries the frame's final pose
     Pose reference_T_camera;
+    int world = 0;
   };
   std::int64_t frame_index = 0;
   std::optional<Found> found;  // the frame was lost, and then it was not
   std::vector<std::string> events;
   std::vector<CulledKeyframe> culled;
   std::optional<ClosedLoop> loop;
+  std::optional<WorldJoin> join;
   std::shared_ptr<const Map> map;  // where it was asked for; null otherwise
 };
 

@@ -6,9 +6,9 @@
 namespace edgeslam {
 namespace {
 
-std::vector<TimedPose> keyframePath(const Map& map) {
+std::vector<TimedPose> keyframePath(const Map& map, const std::vector<KeyframeId>& keyframes) {
   std::vector<TimedPose> path;
-  for (const Keyframe& keyframe : map.keyframes) path.push_back({keyframe.time_ns, keyframe.world_T_camera});
+  for (const KeyframeId id : keyframes) path.push_back({map.keyframes[id].time_ns, map.keyframes[id].world_T_camera});
   return path;
 }
 
@@ -37,12 +37,13 @@ Correction PlacesWorker::work(const Snapshot& snapshot) {
   }
   if (!closed && !adjusted) return correction;
   if (correction.loop) {
-    correction.loop->before = keyframePath(before);
-    correction.loop->after = keyframePath(map);
+    const std::vector<KeyframeId> path = keyframesOf(before, before.keyframes.back().world);
+    correction.loop->before = keyframePath(before, path);
+    correction.loop->after = keyframePath(map, path);
     correction.loop->frame_index = snapshot.frame_index;
     correction.loop->keyframe = map.keyframes.back().id;
   }
-  correction.change = changeOf(before, map);
+  correction.change = changeOf(before, map, correction.change.join);
   return correction;
 }
 
@@ -57,6 +58,11 @@ bool PlacesWorker::closeLoop(Map& map, Correction& correction) {
   const Meeting meeting = meetOldPart(map);
   if (outcome.correction) {
     applyCorrection(*outcome.correction, map);
+    if (const std::optional<WorldJoin>& join = outcome.correction->join) {
+      correction.change.join = join;
+      correction.events.push_back("map " + std::to_string(join->from) + " is part of map " + std::to_string(join->to) +
+                                  ", and joined to it");
+    }
     correction.loop.emplace().how = "by its looks";
   } else if (meeting == Meeting::first) {
     correction.events.emplace_back("an old part of the map is met again by its points");

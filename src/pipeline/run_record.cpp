@@ -11,7 +11,7 @@ FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
   if (unreadable) ++result_.unreadable_frames;
   FrameRecord& record = result_.frames.emplace_back();
   static_cast<FrameResult&>(record) = frame;
-  carried_.push_back({frame.reference, frame.reference_T_camera});
+  carried_.push_back(inWorldOfToday({frame.reference, frame.reference_T_camera, frame.world}));
   return record;
 }
 
@@ -20,11 +20,32 @@ void RunRecord::add(MappingReport report) {
     result_.events.push_back("frame " + std::to_string(report.frame_index) + ": " + event);
   }
   for (const CulledKeyframe& culled : report.culled) culled_[culled.id] = culled;
+  if (report.join) join(*report.join);
   if (report.loop) result_.closed_loops.push_back(std::move(*report.loop));
   if (!report.found) return;
   ++(report.found->how == TrackingState::recovered ? result_.recoveries : result_.relocalisations);
   const std::size_t place = placeOf(report.frame_index);
-  if (place < carried_.size()) carried_[place] = {report.found->reference, report.found->reference_T_camera};
+  if (place < carried_.size())
+    carried_[place] = {report.found->reference, report.found->reference_T_camera, report.found->world};
+}
+
+// What was tracked in a world that was joined to another meanwhile is in the other's unit from then on.
+RunRecord::CarriedPose RunRecord::inWorldOfToday(CarriedPose carried) const {
+  for (auto join = joins_.find(carried.world); join != joins_.end(); join = joins_.find(carried.world)) {
+    carried.reference_T_camera.translation *= join->second.to_S_from.scale;
+    carried.world = join->second.to;
+  }
+  return carried;
+}
+
+void RunRecord::join(const WorldJoin& join) {
+  joins_[join.from] = join;
+  for (CarriedPose& carried : carried_) carried = inWorldOfToday(carried);
+  for (auto& [id, culled] : culled_) {
+    if (culled.world != join.from) continue;
+    culled.kept_T_culled.translation *= join.to_S_from.scale;
+    culled.world = join.to;
+  }
 }
 
 // Of the frame's record; the number of records where there is none.
@@ -38,7 +59,7 @@ std::size_t RunRecord::placeOf(std::int64_t frame_index) const {
 }
 
 // Carried by its keyframe, or, where that was culled, by the one that stands for it.
-std::optional<Pose> RunRecord::finalPose(const Map& map, const CarriedPose& carried) const {
+std::optional<WorldPose> RunRecord::finalPose(const Map& map, const CarriedPose& carried) const {
   KeyframeId reference = carried.reference;
   Pose reference_T_camera = carried.reference_T_camera;
   while (!map.keyframes.contains(reference)) {
@@ -46,24 +67,38 @@ std::optional<Pose> RunRecord::finalPose(const Map& map, const CarriedPose& carr
     if (culled == culled_.end()) return std::nullopt;
     reference_T_camera = culled->second.kept_T_culled * reference_T_camera;
     reference = culled->second.kept;
+    if (reference < 0) return WorldPose{culled->second.world, reference_T_camera};
   }
-  return map.keyframes[reference].world_T_camera * reference_T_camera;
+  return WorldPose{map.keyframes[reference].world, map.keyframes[reference].world_T_camera * reference_T_camera};
+}
+
+void RunRecord::giveFinalPose(std::size_t place, const WorldPose& pose) {
+  FrameRecord& frame = result_.frames[place];
+  frame.has_final_pose = true;
+  frame.final_world = pose.world;
+  frame.final_world_T_camera = pose.world_T_camera;
+}
+
+int RunRecord::mainWorld() const {
+  std::map<int, std::size_t> poses;
+  for (const FrameRecord& frame : result_.frames) {
+    if (frame.has_final_pose) ++poses[frame.final_world];
+  }
+  const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const auto most = std::max_element(poses.begin(), poses.end(), fewer);
+  return most == poses.end() ? 0 : most->first;
 }
 
 RunResult RunRecord::finish(const Mapper& mapper) {
-  if (!mapper.initialised()) return std::move(result_);
   const Map& map = mapper.map();
+  if (map.keyframes.empty()) return std::move(result_);
   for (std::size_t i = 0; i < result_.frames.size(); ++i) {
-    const std::optional<Pose> pose = finalPose(map, carried_[i]);
-    if (!pose) continue;
-    result_.frames[i].has_final_pose = true;
-    result_.frames[i].final_world_T_camera = *pose;
+    if (const std::optional<WorldPose> pose = finalPose(map, carried_[i])) giveFinalPose(i, *pose);
   }
-  for (const auto& [index, pose] : mapper.earlyPoses()) {
-    const std::size_t place = placeOf(index);
+  for (const EarlyPose& early : mapper.earlyPoses()) {
+    const std::size_t place = placeOf(early.frame_index);
     if (place == result_.frames.size() || result_.frames[place].has_final_pose) continue;
-    result_.frames[place].has_final_pose = true;
-    result_.frames[place].final_world_T_camera = pose;
+    giveFinalPose(place, {early.world, early.world_T_camera});
   }
   for (const Keyframe& keyframe : map.keyframes) {
     if (keyframe.id < first_keyframe_) continue;
@@ -73,6 +108,7 @@ RunResult RunRecord::finish(const Mapper& mapper) {
   result_.keyframes = keyframeRecords(map, first_keyframe_);
   result_.map_points = mapPointRecords(map, result_.camera);
   result_.initialisation = mapper.initialisationDescription();
+  result_.main_world = mainWorld();
   return std::move(result_);
 }
 

@@ -32,16 +32,22 @@ class RunRecord {
  private:
   struct CarriedPose {
     KeyframeId reference = -1;  // the keyframe that carries the frame's pose, or -1
-    Pose reference_T_camera;
+    Pose reference_T_camera;    // in the unit of this world
+    int world = -1;
   };
 
   std::size_t placeOf(std::int64_t frame_index) const;
-  std::optional<Pose> finalPose(const Map& map, const CarriedPose& carried) const;
+  CarriedPose inWorldOfToday(CarriedPose carried) const;
+  void join(const WorldJoin& join);
+  std::optional<WorldPose> finalPose(const Map& map, const CarriedPose& carried) const;
+  void giveFinalPose(std::size_t place, const WorldPose& pose);
+  int mainWorld() const;
 
   RunResult result_;
   KeyframeId first_keyframe_ = 0;    // of this run
   std::deque<CarriedPose> carried_;  // by frame record
   std::map<KeyframeId, CulledKeyframe> culled_;
+  std::map<int, WorldJoin> joins_;  // by the younger world
 };
 
 }  // namespace edgeslam

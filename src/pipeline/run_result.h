@@ -18,12 +18,14 @@ namespace edgeslam {
 // A frame's result as it was given out at the time, and what became of it.
 struct FrameRecord : FrameResult {
   bool has_final_pose = false;  // good, and carried by its keyframe's final pose
+  int final_world = -1;         // that the final pose is in, after all joining; -1: none
   Pose final_world_T_camera;
   bool is_keyframe = false;
 };
 
 struct KeyframeRecord {
   int id = 0;
+  int world = 0;
   std::int64_t frame_index = 0;
   std::int64_t time_ns = 0;
   Pose world_T_camera;  // final
@@ -39,6 +41,7 @@ struct MapPointRecord {
   float depth_sigma_ratio = 0;  // standard deviation of the depth over the depth
   unsigned char grey = 0;       // of the image there
   std::int64_t id = 0;          // in the map
+  int world = 0;
 };
 
 // A frame with its edges and tracks, for the report.
@@ -63,8 +66,10 @@ struct ClosedLoop {
 struct RunResult {
   Camera camera;
   std::deque<FrameRecord> frames;  // grows without moving what is there
+  // Of all worlds: maps that could not be joined, each with a coordinate frame and a unit of its own.
   std::vector<KeyframeRecord> keyframes;
   std::vector<MapPointRecord> map_points;
+  int main_world = 0;  // the one with most final poses; of several the earliest
   std::vector<DrawnFrame> drawings;
   std::vector<std::string> events;  // recoveries, relocalisations, loops accepted and refused: "frame 120: ..."
   int recoveries = 0;               // P21

@@ -6,6 +6,7 @@ namespace edgeslam {
 namespace {
 
 constexpr std::size_t longest_reason = 256;
+constexpr std::int64_t search_interval_ns = 100'000'000;  // while a world is begun, which must not wait for searches
 constexpr int frames_with_tracks = 10;  // after a loss: later, hardly a track runs through the last keyframes (P21)
 
 }  // namespace
@@ -13,7 +14,7 @@ constexpr int frames_with_tracks = 10;  // after a loss: later, hardly a track r
 TrackingWorker::TrackingWorker(const Camera& camera, const Settings& settings)
     : relocalise_(settings.relocalisation_enabled || settings.mapping.recovery_enabled),
       tracker_(camera, settings.edges, settings.points, settings.tracking) {
-  for (std::string* text : {&result_.reason, &not_found_}) text->reserve(longest_reason);
+  for (std::string* text : {&result_.reason, &not_found_, &start_reason_}) text->reserve(longest_reason);
   for_mapping_.observations.reserve(static_cast<std::size_t>(settings.points.count));
 }
 
@@ -39,8 +40,12 @@ const FrameResult& TrackingWorker::process(std::int64_t index, std::int64_t time
   if (result.state == TrackingState::lost) {
     ++lost_frames_;
     if (!not_found_.empty()) result.reason.assign("not found again in the map: ").append(not_found_);
-    if (relocalise_ && !mapping_busy && asked_ < 0 && tracker_.hasLostFrame()) askWhere(time_ns, nextMessage(messages));
   }
+  if (tracker_.startsBesideOthers()) {
+    start_reason_.assign("beside the map that was lost: ").append(result.reason);
+    result.reason.assign(start_reason_);
+  }
+  if (!mapping_busy && isToAskWhere(time_ns)) askWhere(time_ns, nextMessage(messages));
   if (result.state == TrackingState::tracking) {
     lost_frames_ = 0;
     asked_frame_ = -1;
@@ -57,20 +62,31 @@ const FrameResult& TrackingWorker::process(std::int64_t index, std::int64_t time
 MappingMessage& TrackingWorker::nextMessage(FrameMessages& messages) {
   MappingMessage& message = messages.add();
   message.number = next_message_++;
-  message.recover = false;
+  message.recover = message.starting = false;
   message.edges.reset();
   message.last_good_pose.reset();
   message.seconds_since = 0;
   return message;
 }
 
+bool TrackingWorker::isToAskWhere(std::int64_t time_ns) const {
+  if (!relocalise_ || asked_ >= 0) return false;
+  return tracker_.hasLostFrame() || (tracker_.startsBesideOthers() && time_ns - asked_ns_ >= search_interval_ns);
+}
+
 void TrackingWorker::askWhere(std::int64_t time_ns, MappingMessage& message) {
   asked_ = message.number;
-  tracker_.keepLostFrame(message.frame);
+  asked_ns_ = time_ns;
+  message.starting = !tracker_.hasLostFrame();
+  if (message.starting) {
+    tracker_.keepStartingFrame(message.frame);
+  } else {
+    tracker_.keepLostFrame(message.frame);
+  }
   message.edges = tracker_.keptEdges();
   message.last_good_pose = last_good_pose_;
   message.seconds_since = static_cast<double>(time_ns - last_good_ns_) * 1e-9;
-  message.recover = last_good_pose_ && lost_frames_ <= frames_with_tracks;
+  message.recover = !message.starting && last_good_pose_ && lost_frames_ <= frames_with_tracks;
   asked_frame_ = message.frame.frame_index;
 }
 

@@ -45,6 +45,7 @@ class TrackingWorker {
   static constexpr int images_ready = 12;
 
   MappingMessage& nextMessage(FrameMessages& messages);
+  bool isToAskWhere(std::int64_t time_ns) const;
   void askWhere(std::int64_t time_ns, MappingMessage& message);
 
   bool relocalise_ = true;
@@ -54,7 +55,9 @@ class TrackingWorker {
   std::int64_t next_message_ = 0;
   std::int64_t asked_ = -1;             // number of the message with a lost frame that is not answered yet, or -1
   std::int64_t asked_frame_ = -1;       // its frame, or -1 where tracking went on by itself since
+  std::int64_t asked_ns_ = 0;           // when the last one was asked
   int lost_frames_ = 0;                 // in a row
+  std::string start_reason_;            // why a world that is begun beside others does not stand yet
   std::string not_found_;               // why the last lost frame that was looked for was not found
   std::optional<TrackingState> found_;  // how the frame was found that the next one is tracked from
   std::optional<Pose> last_good_pose_;

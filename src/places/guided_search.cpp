@@ -74,7 +74,7 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
     const bool corner = point.corner && seen.corner;
     Measurement measurement = corner ? measurementOf(point, found) : measurementOf(seen);
     if (!corner) {
-      measurement.sigma_normal = frame.accuracy.options.sigma_edge;
+      measurement.sigma_normal = sigmaAcross(/*corner=*/false, frame.accuracy);
       measurement.sigma_tangent = std::max<double>(seen.sigma_tangent, point.sigma_tangent);
     }
     result.matches.push_back({point.id, measurement, point.corner, keyframes[found.index]});

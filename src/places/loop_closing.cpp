@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "geometry/angles.h"
 #include "geometry/median.h"
@@ -12,13 +13,19 @@ namespace {
 
 const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
-// Length of the way from one keyframe to a later one.
+bool areOfOneWorld(const Map& map, KeyframeId a, KeyframeId b) {
+  return keyframeOf(map, a).world == keyframeOf(map, b).world;
+}
+
+// Length of the way from one keyframe to a later one of the same world.
 double wayBetween(const Map& map, KeyframeId from, KeyframeId to) {
   double way = 0;
-  for (std::size_t place = map.keyframes.placeOf(from); place < map.keyframes.placeOf(to); ++place) {
-    way += (map.keyframes.atPlace(place + 1).world_T_camera.translation -
-            map.keyframes.atPlace(place).world_T_camera.translation)
-               .norm();
+  const Keyframe* last = &keyframeOf(map, from);
+  for (std::size_t place = map.keyframes.placeOf(from) + 1; place <= map.keyframes.placeOf(to); ++place) {
+    const Keyframe& next = map.keyframes.atPlace(place);
+    if (next.world != last->world) continue;
+    way += (next.world_T_camera.translation - last->world_T_camera.translation).norm();
+    last = &next;
   }
   return way;
 }
@@ -57,6 +64,7 @@ void refuseContradictions(const Map& map, KeyframeId current, std::vector<Judged
   for (std::size_t i = 0; i < loops.size(); ++i) {
     for (std::size_t j = 0; j < loops.size(); ++j) {
       if (i == j || !loops[i].accepted || !loops[j].accepted) continue;
+      if (!areOfOneWorld(map, loops[i].keyframe, loops[j].keyframe)) continue;
       const Pose one = impliedPose(map, loops[i]), other = impliedPose(map, loops[j]);
       if (rotationAngle(one.rotation, other.rotation) < largest_turn &&
           (one.translation - other.translation).norm() < distance) {
@@ -80,13 +88,15 @@ LoopOutcome LoopClosing::addKeyframe(const Map& map) {
 
   std::vector<double> scores(static_cast<std::size_t>(outcome.current), no_score);
   for (const auto& [id, known] : known_) {
-    if (id != outcome.current && known.signature && withinDrift(map, outcome.current, id))
+    if (id == outcome.current || !known.signature) continue;
+    if (!areOfOneWorld(map, outcome.current, id) || withinDrift(map, outcome.current, id))
       scores[static_cast<std::size_t>(id)] = score(*known.signature, *current);
   }
   const LoopDetection detection = detectLoops(map, outcome.current, scores, options_.detection);
   outcome.bar = detection.bar;
   for (const LoopCandidate& candidate : detection.candidates) {
     outcome.considered.push_back(judge(map, outcome.current, candidate));
+    acceptAgreeingJoin(map, outcome.current, outcome.considered.back());
   }
   refuseContradictions(map, outcome.current, outcome.considered);
   const auto best = std::max_element(outcome.considered.begin(), outcome.considered.end(), fewerInliers);
@@ -110,6 +120,13 @@ void LoopClosing::describeNew(const Map& map) {
     known = fits ? std::next(known) : known_.erase(known);
   }
   if (last_loop_ > map.keyframes.back().id) last_loop_ = -1;
+  const std::vector<int> worlds = worldsOf(map);
+  const auto isGone = [&](const auto& proposed) {
+    const WorldJoin& join = proposed.second;
+    return !std::binary_search(worlds.begin(), worlds.end(), join.from) ||
+           !std::binary_search(worlds.begin(), worlds.end(), join.to);
+  };
+  proposed_joins_.erase(std::remove_if(proposed_joins_.begin(), proposed_joins_.end(), isGone), proposed_joins_.end());
   for (const Keyframe& keyframe : map.keyframes) {
     if (known_.count(keyframe.id) > 0) continue;
     Known known;
@@ -150,9 +167,14 @@ JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCand
   judged.score = candidate.score;
   const std::uint64_t seed =
       options_.seed + static_cast<std::uint64_t>(current) * 1000003u + static_cast<std::uint64_t>(candidate.keyframe);
-  judged.verification = verifyLoop(camera_, reading_, map, current, candidate.keyframe, options_.verification, seed);
+  LoopVerificationOptions verification = options_.verification;
+  if (!areOfOneWorld(map, current, candidate.keyframe)) verification.largest_scale = options_.largest_world_scale;
+  judged.verification = verifyLoop(camera_, reading_, map, current, candidate.keyframe, verification, seed);
   judged.reason = judged.verification.reason;
   if (!judged.verification.accepted) return judged;
+  judged.accepted = true;
+  if (!areOfOneWorld(map, current, candidate.keyframe))
+    return judged;  // nothing is known of where they are to each other
 
   // Drift grows with the way: what would move the keyframe farther than drift can is another place that looks the same.
   const Pose& world_T_candidate = keyframeOf(map, candidate.keyframe).world_T_camera;
@@ -163,16 +185,40 @@ JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCand
   const double move = (world_T_candidate * candidate_S_current.translation - world_T_current.translation).norm();
   const double allowed = allowedMove(map, current, candidate.keyframe);
   char text[160];
+  judged.accepted = turn <= options_.largest_turn_deg && move <= allowed;
   if (turn > options_.largest_turn_deg) {
     std::snprintf(text, sizeof(text), "would turn the keyframe by %.0f deg", turn);
     judged.reason = text;
   } else if (move > allowed) {
     std::snprintf(text, sizeof(text), "would move the keyframe by %.2f, over %.2f that drift can", move, allowed);
     judged.reason = text;
-  } else {
-    judged.accepted = true;
   }
   return judged;
+}
+
+// A loop between worlds that only descriptors accept, where other keyframes said the same before.
+void LoopClosing::acceptAgreeingJoin(const Map& map, KeyframeId current, JudgedLoop& judged) {
+  const LoopVerification& verification = judged.verification;
+  if (judged.accepted || !verification.accepted_by_descriptors || areOfOneWorld(map, current, judged.keyframe)) return;
+  const WorldJoin join = joinOf(map, current, judged.keyframe, verification.current_S_candidate);
+  const bool is_younger = keyframeOf(map, current).world == join.from;
+  const KeyframeId younger = is_younger ? current : judged.keyframe, older = is_younger ? judged.keyframe : current;
+  const Pose& from_T_camera = keyframeOf(map, younger).world_T_camera;
+  const Pose here = moved(join.to_S_from, from_T_camera);
+  const double distance = options_.agreeing_distance * sceneDistance(map, older);
+  std::set<KeyframeId> agreeing;
+  for (const auto& [keyframe, proposed] : proposed_joins_) {
+    if (keyframe == current || proposed.from != join.from || proposed.to != join.to) continue;
+    const Pose there = moved(proposed.to_S_from, from_T_camera);
+    const bool agrees = degrees(rotationAngle(here.rotation, there.rotation)) <= options_.agreeing_turn_deg &&
+                        (here.translation - there.translation).norm() <= distance &&
+                        std::abs(std::log(join.to_S_from.scale / proposed.to_S_from.scale)) <= options_.agreeing_scale;
+    if (agrees) agreeing.insert(keyframe);
+  }
+  proposed_joins_.emplace_back(current, join);
+  judged.accepted = static_cast<int>(agreeing.size()) >= options_.agreeing_keyframes;
+  judged.reason += "; " + std::to_string(agreeing.size()) + " of " + std::to_string(options_.agreeing_keyframes) +
+                   " other keyframes say the same";
 }
 
 }  // namespace edgeslam

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "edges/image_reading.h"
@@ -26,7 +27,14 @@ struct LoopClosingOptions {
   double largest_turn_deg = 25;       // a loop that would turn the keyframe by more is no drift [deg]
   double largest_drift = 0.2;         // nor one that would move it by over this share of the way since ...
   double largest_view_turn_deg = 35;  // between two looks at one place that still look alike [deg]
-  int pause_keyframes = 5;            // after a loop no other one is looked for, for so many keyframes
+  // Between worlds nothing is known beforehand, and their shapes are rough: where the search refuses what descriptors
+  // accept, so many other keyframes that say the same are enough ...
+  int agreeing_keyframes = 2;
+  double agreeing_turn_deg = 5;     // [deg]
+  double agreeing_distance = 0.15;  // share of the scene's distance
+  double agreeing_scale = 0.15;     // of the scale's logarithm
+  double largest_world_scale = 10;  // ... of the one unit in the other, or its inverse
+  int pause_keyframes = 5;          // after a loop no other one is looked for, for so many keyframes
   std::uint64_t seed = 1;
 };
 
@@ -70,12 +78,15 @@ class LoopClosing {
   bool withinDrift(const Map& map, KeyframeId current, KeyframeId earlier) const;
   double allowedMove(const Map& map, KeyframeId current, KeyframeId earlier) const;
   JudgedLoop judge(const Map& map, KeyframeId current, const LoopCandidate& candidate) const;
+  void acceptAgreeingJoin(const Map& map, KeyframeId current, JudgedLoop& judged);
 
   Camera camera_;
   ImageReading reading_;
   LoopClosingOptions options_;
   std::map<KeyframeId, Known> known_;
   KeyframeId last_loop_ = -1;  // keyframe at which the last loop was accepted
+  // What keyframes said by their descriptors of how two worlds may be one, by keyframe.
+  std::vector<std::pair<KeyframeId, WorldJoin>> proposed_joins_;
 };
 
 }  // namespace edgeslam

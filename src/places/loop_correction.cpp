@@ -5,6 +5,7 @@
 #include "adjustment/pose_graph.h"
 #include "adjustment/reprojection.h"
 #include "geometry/median.h"
+#include "map/worlds.h"
 
 namespace edgeslam {
 namespace {
@@ -20,20 +21,24 @@ double medianDistance(const PlaceView& view) {
 }
 
 // Keyframes that follow each other or share points are held as they are, and the loop as it was found.
-PoseGraph graphOf(const Map& map, KeyframeId current, KeyframeId candidate, const Similarity& current_S_candidate,
-                  double length, const LoopCorrectionOptions& options) {
+PoseGraph graphOf(const Map& map, const std::vector<KeyframeId>& keyframes, KeyframeId current, KeyframeId candidate,
+                  const Similarity& current_S_candidate, double length, const LoopCorrectionOptions& options) {
   PoseGraph graph;
   graph.length = length;
-  const auto nodeOf = [&](KeyframeId id) { return static_cast<int>(map.keyframes.placeOf(id)); };
-  for (const Keyframe& keyframe : map.keyframes) {
-    graph.nodes.push_back({similarityOf(keyframe.world_T_camera), graph.nodes.empty()});
+  const auto nodeOf = [&](KeyframeId id) {
+    return static_cast<int>(std::lower_bound(keyframes.begin(), keyframes.end(), id) - keyframes.begin());
+  };
+  for (const KeyframeId id : keyframes) {
+    graph.nodes.push_back({similarityOf(keyframeOf(map, id).world_T_camera), graph.nodes.empty()});
   }
-  for (const Keyframe& keyframe : map.keyframes) {
+  for (const KeyframeId id : keyframes) {
+    const Keyframe& keyframe = keyframeOf(map, id);
     const std::vector<int> shared = sharedPoints(map, keyframe.id);
     const int most = *std::max_element(shared.begin(), shared.end());
     const double needed = std::max<double>(options.covisible_points, options.covisible_share * most);
-    for (const Keyframe& other : map.keyframes) {
-      if (other.id >= keyframe.id) break;
+    for (const KeyframeId other_id : keyframes) {
+      if (other_id >= keyframe.id) break;
+      const Keyframe& other = keyframeOf(map, other_id);
       const bool consecutive = nodeOf(other.id) + 1 == nodeOf(keyframe.id);
       if (!consecutive && shared[static_cast<std::size_t>(other.id)] < needed) continue;
       const Pose from_T_to = other.world_T_camera.inverse() * keyframe.world_T_camera;
@@ -75,21 +80,53 @@ void observeInNeighbour(const Camera& camera, const Map& map, const PlaceView& o
   }
 }
 
+// A keyframe of the world made since moves as the one before it.
+void moveAlong(const std::map<KeyframeId, Similarity>& moves, int world, Map& map) {
+  const auto moveOf = [&](KeyframeId id) -> const Similarity& {
+    const auto after = moves.upper_bound(id);
+    return after == moves.begin() ? after->second : std::prev(after)->second;
+  };
+  for (Keyframe& keyframe : map.keyframes) {
+    if (keyframe.world == world) keyframe.world_T_camera = moved(moveOf(keyframe.id), keyframe.world_T_camera);
+  }
+  for (auto& [id, point] : map.points) {
+    if (map.keyframes[point.host].world != world) continue;
+    const double scale = moveOf(point.host).scale;
+    point.inverse_depth /= scale;
+    point.inverse_depth_sigma /= scale;
+  }
+}
+
 }  // namespace
+
+WorldJoin joinOf(const Map& map, KeyframeId current, KeyframeId candidate, const Similarity& current_S_candidate) {
+  const Keyframe &here = keyframeOf(map, current), &there = keyframeOf(map, candidate);
+  const Similarity there_S_here =
+      similarityOf(there.world_T_camera) * current_S_candidate.inverse() * similarityOf(here.world_T_camera).inverse();
+  if (here.world > there.world) return {here.world, there.world, there_S_here};
+  return {there.world, here.world, there_S_here.inverse()};
+}
 
 bool computeCorrection(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
                        const LoopVerification& loop, const LoopVerificationOptions& verification,
                        const LoopCorrectionOptions& options, LoopCorrection& correction) {
   correction = {};
   const PlaceView old_side = placeView(camera, map, candidate, verification.neighbours);
-  PoseGraph graph = graphOf(map, current, candidate, loop.current_S_candidate, medianDistance(old_side), options);
-  if (!optimisePoseGraph(graph, options.iterations).usable) return false;
-
   correction.current = current;
   correction.candidate = candidate;
-  for (const Keyframe& keyframe : map.keyframes) {
-    const Similarity& corrected = graph.nodes[map.keyframes.placeOf(keyframe.id)].world_S_node;
-    correction.new_world_S_world[keyframe.id] = corrected * similarityOf(keyframe.world_T_camera).inverse();
+  correction.world = keyframeOf(map, current).world;
+  if (keyframeOf(map, current).world != keyframeOf(map, candidate).world) {
+    correction.join = joinOf(map, current, candidate, loop.current_S_candidate);
+  } else {
+    const std::vector<KeyframeId> keyframes = keyframesOf(map, keyframeOf(map, current).world);
+    PoseGraph graph =
+        graphOf(map, keyframes, current, candidate, loop.current_S_candidate, medianDistance(old_side), options);
+    if (!optimisePoseGraph(graph, options.iterations).usable) return false;
+    for (std::size_t node = 0; node < keyframes.size(); ++node) {
+      const Similarity& corrected = graph.nodes[node].world_S_node;
+      correction.new_world_S_world[keyframes[node]] =
+          corrected * similarityOf(keyframeOf(map, keyframes[node]).world_T_camera).inverse();
+    }
   }
 
   for (const auto& found : loop.found) {
@@ -118,22 +155,8 @@ bool computeCorrection(const Camera& camera, const Map& map, KeyframeId current,
 }
 
 void applyCorrection(const LoopCorrection& correction, Map& map) {
-  if (correction.new_world_S_world.empty()) return;
-  const auto& moves = correction.new_world_S_world;
-  const auto moveOf = [&](KeyframeId id) -> const Similarity& {
-    const auto after = moves.upper_bound(id);
-    return after == moves.begin() ? after->second : std::prev(after)->second;
-  };
-  for (Keyframe& keyframe : map.keyframes) {
-    const Similarity& move = moveOf(keyframe.id);
-    keyframe.world_T_camera = {(move.rotation * keyframe.world_T_camera.rotation).normalized(),
-                               move * keyframe.world_T_camera.translation};
-  }
-  for (auto& [id, point] : map.points) {
-    const double scale = moveOf(point.host).scale;
-    point.inverse_depth /= scale;
-    point.inverse_depth_sigma /= scale;
-  }
+  if (correction.join) joinWorlds(*correction.join, map);
+  if (!correction.new_world_S_world.empty()) moveAlong(correction.new_world_S_world, correction.world, map);
   for (const auto& [id, observation] : correction.observations) {
     if (!map.keyframes.contains(id)) continue;
     const auto point = map.points.find(observation.point);

@@ -3,9 +3,12 @@
 // come.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "map/worlds.h"
 #include "places/loop_verification.h"
 
 namespace edgeslam {
@@ -26,10 +29,16 @@ struct LoopCorrection {
     PointObservation observation;  // of a point of the old side
   };
   KeyframeId current = -1, candidate = -1;
-  // Moves a keyframe and the points that it hosts; a keyframe made since moves as the one before it.
+  // Two worlds are one: all that is done but for the observations. Otherwise:
+  std::optional<WorldJoin> join;
+  // Moves a keyframe of the loop's world and the points that it hosts; one made since moves as the one before it.
   std::map<KeyframeId, Similarity> new_world_S_world;
+  int world = 0;
   std::vector<Observation> observations;  // by keyframe, then point
 };
+
+// Where a loop leads from one world to another: the younger one becomes part of the older.
+WorldJoin joinOf(const Map& map, KeyframeId current, KeyframeId candidate, const Similarity& current_S_candidate);
 
 // False where the pose graph failed: then the correction is empty.
 bool computeCorrection(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,

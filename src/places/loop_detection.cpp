@@ -17,6 +17,7 @@ double barOf(const Map& map, KeyframeId current, const std::vector<double>& scor
   int counted = 0;
   for (KeyframeId k = current - 1; k >= 0 && counted < options.bar_keyframes; --k) {
     if (scores[static_cast<std::size_t>(k)] == no_score) continue;
+    if (keyframeOf(map, k).world != keyframeOf(map, current).world) continue;
     const double angle =
         rotationAngle(keyframeOf(map, current).world_T_camera.rotation, keyframeOf(map, k).world_T_camera.rotation);
     if (degrees(angle) >= options.bar_rotation_deg) continue;
@@ -58,9 +59,15 @@ LoopDetection detectLoops(const Map& map, KeyframeId current, const std::vector<
     }
     run.clear();
   };
-  for (KeyframeId k = 0; k < current - options.recent_keyframes; ++k) {
+  int world = 0;  // of the run
+  for (KeyframeId k = 0; k < current; ++k) {
     const double score = scores[static_cast<std::size_t>(k)];
     if (score == no_score) continue;
+    const Keyframe& keyframe = keyframeOf(map, k);
+    const bool is_recent = k >= current - options.recent_keyframes;
+    if (is_recent && keyframe.world == keyframeOf(map, current).world) continue;
+    if (keyframe.world != world) endRun();
+    world = keyframe.world;
     if (score > detection.bar && may[static_cast<std::size_t>(k)]) {
       run.push_back({k, score});
     } else {

@@ -31,8 +31,9 @@ constexpr double no_score = -1;
 
 // `scores`: likeness of each earlier keyframe to `current`, in [0, 1], by keyframe number, or no_score where it cannot
 // be compared or is culled. A keyframe is a candidate where it is not recent, is not held together with the current one
-// by map points (see mayCloseLoop), and it and its neighbours in the order of the keyframes, `consecutive` in a row,
-// are all over the bar; it is the best among these. Keyframes without a score are left out as if they were not there.
+// by map points (see mayCloseLoop), or is of another world, and it and its neighbours in the order of the keyframes,
+// `consecutive` in a row, are all over the bar; it is the best among these. Keyframes without a score are left out as
+// if they were not there.
 LoopDetection detectLoops(const Map& map, KeyframeId current, const std::vector<double>& scores,
                           const LoopDetectionOptions& options);
 

@@ -9,6 +9,7 @@
 
 #include "geometry/median.h"
 #include "places/thumbnail.h"
+#include "tracking/measured_noise.h"
 
 namespace edgeslam {
 namespace {
@@ -100,7 +101,8 @@ std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector
   const Keyframe& here = map_.keyframes[keyframe];
   const cv::Mat& grey = here.images->pyramid.levels[0];
   const EdgeMap edges = detectEdges(grey, reading_.edges);
-  const SearchedFrame frame{*here.images, edges, accuracyIn(grey, reading_.accuracy)};
+  SearchedFrame frame{*here.images, edges, accuracyIn(grey, reading_.accuracy)};
+  frame.accuracy.noise_factor = noiseFactorOf(here, reading_.accuracy);
   std::vector<ScreenedPose> screened;
   for (const Pose& start : starts) {
     ScreenedPose look = screenPose(camera_, map_, points_, frame, start, search_);

@@ -7,6 +7,7 @@
 
 #include "places/loop_search.h"
 #include "places/similarity_estimation.h"
+#include "tracking/measured_noise.h"
 
 namespace edgeslam {
 namespace {
@@ -101,6 +102,14 @@ void keepOldSide(const Map& map, KeyframeId current, int neighbours, PlaceView& 
                      there.points.end());
 }
 
+// A camera that errs more makes rougher maps.
+LoopVerificationOptions withNoise(LoopVerificationOptions options, double noise_factor) {
+  options.map_error *= noise_factor;
+  options.largest_move *= noise_factor;
+  options.search.pair_across *= noise_factor;
+  return options;
+}
+
 LoopVerification verifyByDescriptors(const Camera& camera, const Map& map, KeyframeId current, KeyframeId candidate,
                                      const LoopVerificationOptions& options, std::uint64_t seed) {
   LoopVerification result;
@@ -124,7 +133,7 @@ LoopVerification verifyByDescriptors(const Camera& camera, const Map& map, Keyfr
   // Patches, twice: what the first round finds makes the prediction good enough for a narrow search.
   GuidedMatches guided;
   std::vector<PlaceCorrespondence> pairs;
-  for (const double largest_move : {8.0, 4.0}) {
+  for (const double largest_move : {2 * options.largest_move, options.largest_move}) {
     guided = matchGuided(camera, map, there, here, result.current_S_candidate, largest_move, options.guided);
     pairs = guidedPairs(guided, here, there, options);
     result.current_S_candidate = refineSimilarity(camera, pairs, result.current_S_candidate, options.outlier / 2, 20);
@@ -161,7 +170,7 @@ LoopVerification verifyByDescriptors(const Camera& camera, const Map& map, Keyfr
   } else if (!(scale < options.largest_scale && scale > 1 / options.largest_scale)) {
     result.reason = text("a change of scale by %.2f", scale);
   } else {
-    result.accepted = true;
+    result.accepted = result.accepted_by_descriptors = true;
     result.reason = text("%d inliers of %d needed, %.0f %% of the points in view", result.inliers,
                          result.needed_inliers, 100 * result.found_share);
   }
@@ -171,7 +180,9 @@ LoopVerification verifyByDescriptors(const Camera& camera, const Map& map, Keyfr
 }  // namespace
 
 LoopVerification verifyLoop(const Camera& camera, const ImageReading& reading, const Map& map, KeyframeId current,
-                            KeyframeId candidate, const LoopVerificationOptions& options, std::uint64_t seed) {
+                            KeyframeId candidate, const LoopVerificationOptions& presumed, std::uint64_t seed) {
+  const double noise_factor = noiseFactorOf(map.keyframes[current], reading.accuracy);
+  const LoopVerificationOptions options = withNoise(presumed, noise_factor);
   LoopVerification result;
   if (!map.keyframes[current].images || !map.keyframes[candidate].images) {
     result.reason = "a keyframe without images";

@@ -56,6 +56,7 @@ struct LoopVerificationOptions {
   int fewest_descriptor_inliers = 15;  // before patches are looked for
   double outlier = 3.0;                // whitened error of an inlier, in either image and in depth
   double map_error = 0.7;              // of the maps' shapes, added to each measurement's deviations [px]
+  double largest_move = 4;             // of a patch from where it should be, the last time it is looked for [px]
   double depth_error = 0.05;           // likewise to the distances, as a share of them
   int most_needed_inliers = 100;       // the paper's count ...
   int fewest_needed_inliers = 40;      // ... less in a poor scene, never less than this ...
@@ -68,8 +69,9 @@ struct LoopVerificationOptions {
 
 struct LoopVerification {
   bool accepted = false;
-  std::string reason;              // why not, or what speaks for it, in words
-  Similarity current_S_candidate;  // camera coordinates of the candidate to those of the current keyframe
+  bool accepted_by_descriptors = false;  // and by patches, but not by the search, as it may be: similarity, found
+  std::string reason;                    // why not, or what speaks for it, in words
+  Similarity current_S_candidate;        // camera coordinates of the candidate to those of the current keyframe
   int descriptor_pairs = 0, descriptor_inliers = 0;
   int inliers = 0, needed_inliers = 0;
   double found_share = 0;

@@ -17,23 +17,26 @@ DescribedPoints describeAtTwoSizes(const cv::Mat& grey, const std::vector<Eigen:
   return described;
 }
 
-bool isReachable(const std::optional<Reachable>& reachable, const Pose& pose, double widening) {
-  return !reachable || (pose.translation - reachable->centre).norm() <= widening * reachable->distance;
+// Of other worlds nothing is known.
+bool isReachable(const std::optional<Reachable>& reachable, int world, const Pose& pose, double widening) {
+  return !reachable || world != reachable->world ||
+         (pose.translation - reachable->centre).norm() <= widening * reachable->distance;
 }
 
 }  // namespace
 
-Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double seconds) {
+Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double seconds, int world) {
   double fastest = 0, farthest = 0;
   for (std::size_t place = 1; place < map.keyframes.size(); ++place) {
     const Keyframe &a = map.keyframes.atPlace(place - 1), &b = map.keyframes.atPlace(place);
+    if (a.world != world || b.world != world) continue;
     const double elapsed = 1e-9 * static_cast<double>(b.time_ns - a.time_ns);
     if (elapsed <= 0 || elapsed > longest_step_s) continue;  // between two runs there is no motion to learn from
     const double distance = (b.world_T_camera.translation - a.world_T_camera.translation).norm();
     farthest = std::max(farthest, distance);
     fastest = std::max(fastest, distance / elapsed);
   }
-  return {world_T_camera.translation, std::max(farthest, 2 * fastest * seconds)};
+  return {world_T_camera.translation, std::max(farthest, 2 * fastest * seconds), world};
 }
 
 void Relocalisation::addKeyframe(const Keyframe& keyframe) {
@@ -170,7 +173,8 @@ void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
   const GuidedSearchOptions& options = options_.guided_search;
   std::vector<Screened> screened;
   for (const Start& start : starts) {
-    if (!isReachable(reachable, start.world_T_camera, 2)) continue;  // it is a guess yet
+    const int world = map.keyframes[start.keyframe].world;
+    if (!isReachable(reachable, world, start.world_T_camera, 2)) continue;  // it is a guess yet
     Screened look{start.keyframe, pointsAround(map, start.keyframe, options.neighbours), {}};
     look.pose = screenPose(camera_, map, look.points, frame, start.world_T_camera, options);
     if (look.pose.evidence.share() >= options_.screened_share) screened.push_back(std::move(look));
@@ -178,6 +182,9 @@ void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
   std::stable_sort(screened.begin(), screened.end(), [](const Screened& a, const Screened& b) {
     return a.pose.evidence.share() > b.pose.evidence.share();
   });
+  const auto ofOtherWorld = [&](KeyframeId keyframe) {
+    return map.keyframes[keyframe].world != map.keyframes[result.keyframe].world;
+  };
   const auto different = [&](const Pose& pose) {
     const double distance = (pose.translation - result.world_T_camera.translation).norm();
     return distance > options_.rival_distance * result.evidence.median_distance ||
@@ -185,15 +192,16 @@ void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
   };
   int followed_up = 0;
   for (const Screened& look : screened) {
-    if (result.found && !different(look.pose.world_T_camera)) continue;
+    if (result.found && !ofOtherWorld(look.keyframe) && !different(look.pose.world_T_camera)) continue;
     if (followed_up++ == options_.refined_poses) break;
     GuidedSearchResult search = guidedSearch(camera_, map, look.points, frame, look.pose.world_T_camera, options);
-    if (search.accepted && !isReachable(reachable, search.pose.world_T_camera, 1)) {
+    if (search.accepted && !isReachable(reachable, map.keyframes[look.keyframe].world, search.pose.world_T_camera, 1)) {
       search.accepted = false;
       search.reason = "what looks like it is out of reach";
     }
     const double share = search.evidence.explained, best = result.evidence.explained;
-    if (result.found && search.accepted && different(search.pose.world_T_camera) &&
+    // Two worlds may both have seen this place, and be one; within a world it can only be at one.
+    if (result.found && search.accepted && !ofOtherWorld(look.keyframe) && different(search.pose.world_T_camera) &&
         std::min(share, best) > options_.rival_share * std::max(share, best)) {
       result.found = false;
       result.matches.clear();
@@ -213,7 +221,7 @@ void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
 }
 
 RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImages& current, const EdgeMap& edges,
-                                                const std::optional<Reachable>& reachable) const {
+                                                const std::optional<Reachable>& reachable, double noise_factor) const {
   RelocalisationResult result;
   const std::vector<Candidate> tried = candidates(map, makeThumbnail(current.pyramid));
   if (tried.empty()) {
@@ -221,7 +229,8 @@ RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImage
     return result;
   }
   result.reason = "from no keyframe does the map show in this frame";
-  const SearchedFrame frame{current, edges, accuracyIn(current.pyramid.levels[0], accuracy_)};
+  SearchedFrame frame{current, edges, accuracyIn(current.pyramid.levels[0], accuracy_)};
+  frame.accuracy.noise_factor = noise_factor;
   searchFrom(startsByTurning(map, tried), map, frame, reachable, result);
   if (result.evidence.visible > 0) return result;  // another start would lead to the same pose
   searchFrom(startsByDescriptors(map, tried, frame), map, frame, reachable, result);

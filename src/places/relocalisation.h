@@ -42,11 +42,12 @@ struct RelocalisationOptions {
 struct Reachable {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // world
   double distance = 0;                               // [map units]
+  int world = 0;                                     // that both are of
 };
 
 // From the pose at which the camera was lost `seconds` ago: twice as far as the fastest motion between two keyframes of
 // the map would have led, and never less than the farthest that two successive ones lie apart.
-Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double seconds);
+Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double seconds, int world = 0);
 
 struct RelocalisationResult {
   bool found = false;
@@ -71,10 +72,11 @@ class Relocalisation {
   void update(const Map& map);
 
   // The pose of a frame of which nothing is known but, where given, what can be reached. Where things repeat and two
-  // different poses are as good, there is none. `map`'s keyframes are those added, where they are now. Same input, same
-  // result.
+  // different poses are as good, there is none. `noise_factor`: how many times as far as presumed its measurements err.
+  // `map`'s keyframes are those added, where they are now. Same input, same result.
   RelocalisationResult relocalise(const Map& map, const FrameImages& current, const EdgeMap& edges,
-                                  const std::optional<Reachable>& reachable = std::nullopt) const;
+                                  const std::optional<Reachable>& reachable = std::nullopt,
+                                  double noise_factor = 1) const;
 
  private:
   struct KnownKeyframe {

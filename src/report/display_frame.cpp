@@ -7,7 +7,7 @@ namespace edgeslam {
 DisplayFrame displayFrame(const RunResult& result, const RunSummary& summary) {
   std::optional<Similarity> reference_T_world;
   if (summary.errors.trajectory) reference_T_world = summary.errors.trajectory->reference_T_estimate;
-  return displayFrame(finalTrajectory(result), reference_T_world);
+  return displayFrame(finalTrajectory(result, result.main_world), reference_T_world);
 }
 
 DisplayFrame displayFrame(const Trajectory& trajectory, const std::optional<Similarity>& reference_T_world) {

@@ -51,6 +51,7 @@ ordered_json keyframesJson(const RunResult& result, const Similarity& display, c
   const Rounding fine(1e-4);
   ordered_json keyframes = ordered_json::array();
   for (const KeyframeRecord& keyframe : result.keyframes) {
+    if (keyframe.world != result.main_world) continue;
     const Eigen::Quaterniond rotation = display.rotation * keyframe.world_T_camera.rotation;
     ordered_json position = ordered_json::array();
     appendPosition(position, display * keyframe.world_T_camera.translation, rounded);
@@ -67,9 +68,12 @@ ordered_json keyframesJson(const RunResult& result, const Similarity& display, c
 // Positions as whole numbers of `step`; `lines` gives the number of points of each line, in the order of the positions.
 ordered_json mapJson(const RunResult& result, const Similarity& display, const Rounding& rounded) {
   std::vector<Eigen::Vector3d> cameras;
-  for (const KeyframeRecord& keyframe : result.keyframes) cameras.push_back(keyframe.world_T_camera.translation);
-  const std::vector<std::vector<int>> lines = joinChains(result.map_points, cameras);
-  const std::size_t stride = strideFor(result.map_points.size(), most_map_points);
+  for (const StampedPose& keyframe : keyframeTrajectory(result, result.main_world)) {
+    cameras.push_back(keyframe.world_T_camera.translation);
+  }
+  const std::vector<MapPointRecord> points = mapPointsOf(result, result.main_world);
+  const std::vector<std::vector<int>> lines = joinChains(points, cameras);
+  const std::size_t stride = strideFor(points.size(), most_map_points);
   constexpr double farthest = 1e9;  // steps: what is beyond would only bloat the page
   ordered_json positions = ordered_json::array();
   ordered_json lengths = ordered_json::array();
@@ -80,7 +84,7 @@ ordered_json mapJson(const RunResult& result, const Similarity& display, const R
   for (std::size_t line = 0; line < lines.size(); line += stride) {
     std::size_t length = 0;
     for (const int index : lines[line]) {
-      const MapPointRecord& point = result.map_points[static_cast<std::size_t>(index)];
+      const MapPointRecord& point = points[static_cast<std::size_t>(index)];
       const Eigen::Vector3d position = display * point.position / rounded.step();
       if (!(position.cwiseAbs().maxCoeff() < farthest)) continue;
       for (int i = 0; i < 3; ++i) positions.push_back(static_cast<std::int64_t>(std::lround(position[i])));
@@ -91,17 +95,11 @@ ordered_json mapJson(const RunResult& result, const Similarity& display, const R
     }
     if (length == 0) continue;
     lengths.push_back(length);
-    chains.push_back(result.map_points[static_cast<std::size_t>(lines[line].front())].chain);
+    chains.push_back(points[static_cast<std::size_t>(lines[line].front())].chain);
     shown += length;
   }
-  return {{"step", rounded.step()},
-          {"positions", positions},
-          {"lines", lengths},
-          {"chains", chains},
-          {"greys", greys},
-          {"sigmas_permille", sigmas},
-          {"points", result.map_points.size()},
-          {"shown", shown}};
+  return {{"step", rounded.step()}, {"positions", positions},    {"lines", lengths},        {"chains", chains},
+          {"greys", greys},         {"sigmas_permille", sigmas}, {"points", points.size()}, {"shown", shown}};
 }
 
 ordered_json publishedFor(const RunDescription& description) {
@@ -133,7 +131,7 @@ ordered_json reportData(const RunResult& result, const RunSummary& summary, cons
   const DisplayFrame frame = displayFrame(result, summary);
   const Similarity& display = frame.display_T_world;
   const Clock clock(result);
-  const Trajectory trajectory = finalTrajectory(result);
+  const Trajectory trajectory = finalTrajectory(result, result.main_world);
   const double size = extent(trajectory, display);
   const Rounding rounded(size > 0 && std::isfinite(size) ? size * 1e-5 : 1e-4);
 
@@ -146,6 +144,7 @@ ordered_json reportData(const RunResult& result, const RunSummary& summary, cons
   const Camera& camera = result.camera;
   return {{"summary", summaryJson(summary, result, description)},
           {"published", publishedFor(description)},
+          {"worlds_in_words", worldsInWords(summary.worlds)},
           {"aligned", frame.aligned},
           {"unit", frame.aligned ? "m" : "map units"},
           {"axes", {frame.x_name, frame.y_name, frame.z_name}},
@@ -157,7 +156,7 @@ ordered_json reportData(const RunResult& result, const RunSummary& summary, cons
             {"cx", camera.cx},
             {"cy", camera.cy}}},
           {"trajectory", trajectoryJson(trajectory, display, clock, rounded)},
-          {"live", trajectoryJson(liveTrajectory(result), display, clock, rounded)},
+          {"live", trajectoryJson(liveTrajectory(result, result.main_world), display, clock, rounded)},
           {"truth", truth},
           {"keyframes", keyframesJson(result, display, clock, rounded)},
           {"map", mapJson(result, display, rounded)},

@@ -17,7 +17,8 @@ std::vector<std::size_t> stretches(const RunResult& result, bool by_reason) {
   for (std::size_t i = 0; i < result.frames.size(); ++i) {
     const FrameRecord& frame = result.frames[i];
     const FrameRecord& before = result.frames[begins.empty() ? 0 : begins.back()];
-    if (i == 0 || frame.state != before.state || frame.has_final_pose != before.has_final_pose ||
+    if (i == 0 || frame.state != before.state ||
+        hasFinalPoseIn(frame, result.main_world) != hasFinalPoseIn(before, result.main_world) ||
         (by_reason && frame.reason != before.reason)) {
       begins.push_back(i);
     }
@@ -45,7 +46,7 @@ ordered_json stateRunsJson(const RunResult& result, const Clock& clock) {
                     {"to", clock(after.time_ns)},
                     {"state", stateName(first.state)},
                     {"reason", first.reason},
-                    {"final_pose", first.has_final_pose},
+                    {"final_pose", hasFinalPoseIn(first, result.main_world)},
                     {"first_frame", first.index},
                     {"frames", begins[i + 1] - begins[i]}});
   }

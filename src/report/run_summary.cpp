@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "edgeslam/input_error.h"
+#include "report/recording_quality.h"
 
 namespace edgeslam {
 namespace {
@@ -115,46 +116,37 @@ ordered_json errorJson(const std::optional<AbsoluteError>& error) {
 
 ordered_json optionalJson(const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(); }
 
+ordered_json worldsJson(const RunSummary& summary) {
+  ordered_json worlds = ordered_json::array();
+  for (const WorldSummary& world : summary.worlds) {
+    worlds.push_back({{"world", world.world},
+                      {"frames_with_pose", world.final_poses},
+                      {"first_pose_s", optionalJson(world.first_pose_s)},
+                      {"keyframes", world.keyframes},
+                      {"map_points", world.map_points}});
+  }
+  return worlds;
+}
+
 }  // namespace
-
-Trajectory finalTrajectory(const RunResult& result) {
-  Trajectory trajectory;
-  for (const FrameRecord& frame : result.frames) {
-    if (frame.has_final_pose) trajectory.push_back({frame.time_ns, frame.final_world_T_camera});
-  }
-  return trajectory;
-}
-
-Trajectory liveTrajectory(const RunResult& result) {
-  Trajectory trajectory;
-  for (const FrameRecord& frame : result.frames) {
-    if (frame.has_pose && isGoodPose(frame.state)) trajectory.push_back({frame.time_ns, frame.world_T_camera});
-  }
-  return trajectory;
-}
-
-Trajectory keyframeTrajectory(const RunResult& result) {
-  Trajectory trajectory;
-  for (const KeyframeRecord& keyframe : result.keyframes)
-    trajectory.push_back({keyframe.time_ns, keyframe.world_T_camera});
-  return trajectory;
-}
 
 RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& ground_truth) {
   RunSummary summary;
   summary.frames = static_cast<std::int64_t>(result.frames.size());
   summary.unreadable_frames = result.unreadable_frames;
+  summary.worlds = worldsOf(result);
+  summary.recording_quality = recordingQuality(result);
   for (const TrackingState state : all_states) summary.states[state] = 0;
   std::int64_t frames_from_first_pose = 0;
   for (const FrameRecord& frame : result.frames) {
     const double since_start = seconds(frame.time_ns - result.frames.front().time_ns);
     ++summary.states[frame.state];
-    if (frame.has_final_pose) {
+    if (hasFinalPoseIn(frame, result.main_world)) {
       ++summary.final_poses;
       if (!summary.first_pose_s) summary.first_pose_s = since_start;
     }
     if (summary.first_pose_s) ++frames_from_first_pose;
-    if (frame.has_pose && isGoodPose(frame.state)) {
+    if (hasGoodLivePoseIn(frame, result.main_world)) {
       ++summary.live_poses;
       if (!summary.first_live_pose_s) summary.first_live_pose_s = since_start;
     }
@@ -172,9 +164,9 @@ RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& g
   summary.share_in_time = shareInTime(result);
   summary.has_ground_truth = ground_truth.has_value();
   if (ground_truth) {
-    summary.errors.trajectory = errorIfComparable(finalTrajectory(result), *ground_truth);
-    summary.errors.live = errorIfComparable(liveTrajectory(result), *ground_truth);
-    summary.errors.keyframes = errorIfComparable(keyframeTrajectory(result), *ground_truth);
+    summary.errors.trajectory = errorIfComparable(finalTrajectory(result, result.main_world), *ground_truth);
+    summary.errors.live = errorIfComparable(liveTrajectory(result, result.main_world), *ground_truth);
+    summary.errors.keyframes = errorIfComparable(keyframeTrajectory(result, result.main_world), *ground_truth);
     for (const ClosedLoop& loop : result.closed_loops) {
       summary.loops.push_back({errorIfComparable(trajectoryOf(loop.before), *ground_truth),
                                errorIfComparable(trajectoryOf(loop.after), *ground_truth)});
@@ -223,17 +215,19 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
             {"with_pose", summary.final_poses},
             {"with_live_pose", summary.live_poses}}},
           {"states", states},
+          {"worlds", worldsJson(summary)},
           {"coverage_from_first_pose", summary.coverage},
           {"first_pose_s", optionalJson(summary.first_pose_s)},
           {"first_live_pose_s", optionalJson(summary.first_live_pose_s)},
-          {"keyframes", result.keyframes.size()},
-          {"map_points", result.map_points.size()},
+          {"keyframes", summary.worlds.front().keyframes},
+          {"map_points", summary.worlds.front().map_points},
           {"initialisation", result.initialisation},
           {"recoveries", result.recoveries},
           {"relocalisations", result.relocalisations},
           {"loops", result.closed_loops.size()},
           {"closed_loops", loops},
           {"events", result.events},
+          {"recording_quality", summary.recording_quality},
           {"absolute_trajectory_error", errors},
           {"stage_times_ms", stages},
           {"thread_durations_ms", threads},

@@ -1,4 +1,5 @@
-// The figures of a run: how many frames got a pose, how long each stage took, how far off the trajectory is.
+// The figures of a run: how many frames got a pose, how long each stage took, how far off the trajectory is. Poses,
+// coverage, errors, keyframes and points are those of the main world (run_worlds.h).
 #pragma once
 
 #include <array>
@@ -10,9 +11,9 @@
 #include <vector>
 
 #include "evaluation/evaluation.h"
-#include "evaluation/trajectory.h"
 #include "pipeline/run_result.h"
 #include "report/run_description.h"
+#include "report/run_worlds.h"
 
 namespace edgeslam {
 
@@ -41,6 +42,7 @@ struct RunSummary {
   std::int64_t final_poses = 0;                  // lines of trajectory.txt
   std::int64_t live_poses = 0;                   // lines of trajectory_live.txt
   std::map<TrackingState, std::int64_t> states;  // every state, 0 where it did not occur
+  std::vector<WorldSummary> worlds;              // the main one first
   double coverage = 0;                           // share of the frames from the first final pose on that have one
   std::optional<double> first_pose_s;            // from the first frame to the first final pose [s]
   std::optional<double> first_live_pose_s;       // from the first frame to the first good live pose [s]
@@ -54,12 +56,8 @@ struct RunSummary {
   bool has_ground_truth = false;
   RunErrors errors;
   std::vector<LoopErrors> loops;  // by closed loop
+  std::string recording_quality;  // what is wrong with the recording, or empty (recording_quality.h)
 };
-
-// Every frame with a final pose, every frame with a good live pose, every keyframe.
-Trajectory finalTrajectory(const RunResult& result);
-Trajectory liveTrajectory(const RunResult& result);
-Trajectory keyframeTrajectory(const RunResult& result);
 
 RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& ground_truth);
 

@@ -19,6 +19,7 @@ GroundScene groundScene(const Map& map, const Eigen::Vector3d& camera_up, const 
   const auto count = static_cast<std::ptrdiff_t>(map.keyframes.size());
   for (auto at = map.keyframes.end() - std::min<std::ptrdiff_t>(count, options.latest_keyframes);
        at != map.keyframes.end(); ++at) {
+    if (at->world != map.keyframes.back().world) continue;
     cameras[at->id] = scene.cameras.size();
     scene.cameras.push_back(at->world_T_camera.translation);
     scene.ups.push_back(at->world_T_camera.rotation * camera_up);

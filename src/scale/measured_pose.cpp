@@ -1,5 +1,7 @@
 #include "scale/measured_pose.h"
 
+#include <algorithm>
+
 namespace edgeslam {
 
 bool hasUsablePose(const FrameResult& result) {
@@ -8,10 +10,14 @@ bool hasUsablePose(const FrameResult& result) {
          pose.rotation.norm() > 1e-3;
 }
 
+// A pose whose world is not told is in the first.
+int worldOf(const FrameResult& result) { return hasUsablePose(result) ? std::max(0, result.world) : -1; }
+
 std::optional<MeasuredPose> measuredPose(const FrameResult& result) {
   if (!isGoodPose(result.state) || !hasUsablePose(result)) return std::nullopt;
   MeasuredPose measured;
   measured.time_ns = result.time_ns;
+  measured.world = worldOf(result);
   measured.world_T_camera = {result.world_T_camera.rotation.normalized(), result.world_T_camera.translation};
   measured.covariance_camera = result.covariance;
   const Pose& hanging = result.reference_T_camera;

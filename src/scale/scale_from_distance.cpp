@@ -15,6 +15,7 @@ void PositionHistory::add(const FrameResult& result) {
   if (!measured) return;
   Position& position = positions_[next_];
   position.utime = utimeOf(measured->time_ns);
+  position.world = measured->world;
   position.position = measured->world_T_camera.translation;
   const Eigen::Matrix3d world_R_camera = measured->world_T_camera.rotation.toRotationMatrix();
   position.covariance = world_R_camera * measured->covariance_camera.topLeftCorner<3, 3>() * world_R_camera.transpose();
@@ -38,6 +39,7 @@ ScaleResult scaleFromDistance(const PositionHistory& history, std::int64_t from_
             std::string(from ? "to_utime" : "from_utime") +
                 " is the time stamp of no frame with a measured pose since the map was last corrected"};
   }
+  if (from->world != to->world) return {{}, "the two frames are in maps that were not joined"};
   const Eigen::Vector3d way = to->position - from->position;
   const double distance = way.norm();
   if (!(distance > 0)) return {{}, "the camera did not move between the two frames"};
@@ -49,7 +51,7 @@ ScaleResult scaleFromDistance(const PositionHistory& history, std::int64_t from_
             "the two frames are too near together: their distance is known to " +
                 std::to_string(std::lround(100 * std::min(sigma, 1e6))) + " % only"};
   }
-  return {{ScaleKind::known_distance, distance_m / distance, sigma}, ""};
+  return {{ScaleKind::known_distance, distance_m / distance, sigma}, "", to->world};
 }
 
 }  // namespace edgeslam

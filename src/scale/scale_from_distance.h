@@ -23,6 +23,7 @@ class PositionHistory {
 
   struct Position {
     std::int64_t utime = 0;                                // of the frame [us]
+    int world = 0;                                         // that it is in
     Eigen::Vector3d position = Eigen::Vector3d::Zero();    // of the camera, world [map units]
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // world
   };
@@ -37,6 +38,7 @@ class PositionHistory {
 struct ScaleResult {
   ScaleState scale;     // where there is no problem
   std::string problem;  // why not, and what would do
+  int world = 0;        // whose scale it is
 };
 
 // `distance_m`: over 0.

@@ -41,6 +41,10 @@ void ScaleSearch::mapWasCorrected() {
   if (height_) height_->clear();
 }
 
+void ScaleSearch::breakOff() {
+  if (odometry_) odometry_->breakOff();
+}
+
 std::optional<ScaleEstimate> ScaleSearch::estimate() const {
   if (odometry_) return odometry_->estimate();
   return height_ ? height_->estimate() : std::nullopt;

@@ -22,6 +22,8 @@ class ScaleSearch {
   void forget();
   // By a loop: what is known stays published, and is found anew.
   void mapWasCorrected();
+  // The camera was in another world: frames before and after do not go together.
+  void breakOff();
 
   // Once a second: the scale from now on; none while it is not known.
   std::optional<ScaleState> everySecond();

@@ -5,6 +5,8 @@
 #include <optional>
 #include <thread>
 
+#include "service/map_publisher.h"
+
 namespace edgeslam {
 namespace {
 
@@ -34,7 +36,7 @@ void DaemonPage::waitUntilWatched() {
 
 void DaemonPage::showUntilSignal(const Map& map) {
   assert(viewer_);
-  viewer_->map(std::make_shared<const Map>(map));
+  viewer_->map(std::make_shared<const Map>(map), largestWorld(map));
   viewer_->note("The recording is at its end. The map can still be looked at.");
   log_.tell("shows the page until Ctrl-C");
   while (!signals_.end()) {

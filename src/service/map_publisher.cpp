@@ -1,6 +1,8 @@
 #include "service/map_publisher.h"
 
+#include <algorithm>
 #include <cassert>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -11,9 +13,10 @@ namespace {
 
 constexpr auto shown_interval = std::chrono::seconds(2);
 
-std::vector<PublishedPoint> publishedPoints(const Map& map, const Camera& camera) {
+std::vector<PublishedPoint> publishedPoints(const Map& map, int world, const Camera& camera) {
   std::vector<PublishedPoint> points;
   for (const MapPointRecord& record : mapPointRecords(map, camera)) {
+    if (record.world != world) continue;
     points.push_back({record.id, record.position.cast<float>(), record.edge_direction.cast<float>()});
   }
   return points;
@@ -27,6 +30,13 @@ MapPublisher::MapPublisher(const Camera& camera, double interval_s, LcmPublisher
 
 void MapPublisher::begin(LiveRun& run) {
   run_ = &run;
+  published_changes_ = 0;
+  shown_changes_ = -1;
+}
+
+void MapPublisher::enterWorld(int world) {
+  if (world == world_) return;
+  world_ = world;
   published_changes_ = 0;
   shown_changes_ = -1;
 }
@@ -64,13 +74,22 @@ void MapPublisher::showWhereChanged(Clock::time_point now) {
 }
 
 void MapPublisher::mapCame(const std::shared_ptr<const Map>& map) {
-  if (viewer_) viewer_->map(map);
+  const int world = world_ >= 0 ? world_ : largestWorld(*map);
+  if (viewer_) viewer_->map(map, world);
   if (!std::exchange(is_wanted_, false)) return;
-  work_.begin([this, map, camera = camera_, version = ++version_]() -> BackgroundWork::Completion {
-    return [this, version, points = publishedPoints(*map, camera)]() mutable {
+  work_.begin([this, map, world, camera = camera_, version = ++version_]() -> BackgroundWork::Completion {
+    return [this, version, points = publishedPoints(*map, world, camera)]() mutable {
       publisher_.map(version, std::move(points));
     };
   });
+}
+
+int largestWorld(const Map& map) {
+  std::map<int, int> keyframes;
+  for (const KeyframeRecord& record : keyframeRecords(map)) ++keyframes[record.world];
+  const auto largest = std::max_element(keyframes.begin(), keyframes.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+  return largest == keyframes.end() ? 0 : largest->first;
 }
 
 }  // namespace edgeslam

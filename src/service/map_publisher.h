@@ -25,6 +25,8 @@ class MapPublisher {
   void begin(LiveRun& run);
   void end() { is_wanted_ = false; }
 
+  // Points and keyframes that go out are those of this world; -1: no pose yet, of the one with most keyframes.
+  void enterWorld(int world);
   // SLAM_MAP follows as soon as the map is there.
   void ask();
   void everySecond(Clock::time_point now);
@@ -42,11 +44,15 @@ class MapPublisher {
   BackgroundWork& work_;
   LiveRun* run_ = nullptr;  // from begin() on
 
+  int world_ = -1;
   bool is_wanted_ = false;  // for SLAM_MAP
   Clock::time_point next_time_{};
   std::int64_t published_changes_ = 0, version_ = 0;
   Clock::time_point next_shown_time_{};
   std::int64_t shown_changes_ = -1;  // of the map that the viewer has; -1: it has none
 };
+
+// The world of a map with most keyframes, of several the earliest; 0 for an empty map.
+int largestWorld(const Map& map);
 
 }  // namespace edgeslam

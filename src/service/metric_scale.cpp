@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "files/format_text.h"
+#include "pipeline/map_records.h"
 
 namespace edgeslam {
 namespace {
@@ -27,77 +28,113 @@ std::string withoutDigits(std::string text) {
 
 MetricScale::MetricScale(const ScaleOptions& options, const Pose& body_T_camera, LcmPublisher& publisher,
                          BackgroundWork& work, EventLog& log)
-    : options_(options),
-      body_T_camera_(body_T_camera),
-      publisher_(publisher),
-      work_(work),
-      log_(log),
-      search_(options, body_T_camera) {}
+    : options_(options), body_T_camera_(body_T_camera), publisher_(publisher), work_(work), log_(log) {
+  worlds_.insert({no_world, {ScaleSearch(options, body_T_camera), {}}});
+}
 
-void MetricScale::forget() {
-  history_.clear();
-  search_.forget();
+// Nothing is known of it but what the wheels said last.
+void MetricScale::begin(int world) {
+  ScaleSearch search = here().search;
+  search.forget();
+  worlds_.insert_or_assign(world, WorldScale{std::move(search), {}});
+}
+
+void MetricScale::forgetWhatIsUnderWay() {
   ground_keyframe_ = -1;
   told_problems_.clear();
   ++ground_looks_void_;
+}
+
+void MetricScale::forget() {
+  noMap();
+  history_.clear();
+  worlds_.erase(worlds_.upper_bound(no_world), worlds_.end());
+}
+
+void MetricScale::noMap() {
   if (isKnown()) log_.tell("the scale is unknown again: another map was begun");
-  kind_ = ScaleKind::unknown;
+  forgetWhatIsUnderWay();
+  begin(no_world);
+  world_ = no_world;
   publisher_.setScale({});
 }
 
+// A map that begins under a number known from before is another one.
+void MetricScale::enterWorld(const FrameResult& result) {
+  if (!measuredPose(result)) return;
+  const int world = worldOf(result);
+  if (world == world_) return;
+  const bool is_another_map = world_ == no_world && result.state == TrackingState::tracking;
+  if (is_another_map || worlds_.count(world) == 0) begin(world);
+  const bool was_known = isKnown();
+  world_ = world;
+  here().search.breakOff();
+  forgetWhatIsUnderWay();
+  if (isKnown()) log_.tell(scaleText(here().scale));
+  if (was_known && !isKnown()) log_.tell("the scale is unknown in this map");
+  publisher_.setScale(here().scale);
+}
+
+// A saved map is the first world.
 void MetricScale::takeConfigured() {
   if (!(options_.metres_per_unit > 0)) return;
-  kind_ = ScaleKind::known_distance;
-  publisher_.setScale({kind_, options_.metres_per_unit, options_.sigma});
+  begin(0);
+  world_ = 0;
+  here().scale = {ScaleKind::known_distance, options_.metres_per_unit, options_.sigma};
+  publisher_.setScale(here().scale);
 }
 
 void MetricScale::mapWasCorrected() {
   history_.clear();
-  search_.mapWasCorrected();
+  for (auto& [world, known] : worlds_) known.search.mapWasCorrected();
   ++ground_looks_void_;
 }
 
 void MetricScale::frame(const FrameResult& result) {
+  enterWorld(result);
   history_.add(result);
   takeOdometry();
-  search_.add(result);
+  here().search.add(result);
 }
 
 void MetricScale::takeOdometry() {
-  while (const std::optional<OdometryPose> pose = publisher_.nextOdometry()) search_.add(*pose);
+  while (const std::optional<OdometryPose> pose = publisher_.nextOdometry()) here().search.add(*pose);
 }
 
 CommandOutcome MetricScale::set(const Command& command) {
   const ScaleResult result =
       scaleFromDistance(history_, command.from_utime, command.to_utime, command.distance_m, options_);
   if (!result.problem.empty()) return {false, result.problem};
-  kind_ = result.scale.kind;
-  publisher_.setScale(result.scale);
-  log_.tell(scaleText(result.scale));
-  return {true, scaleText(result.scale)};
+  worlds_.at(result.world).scale = result.scale;
+  publisher_.setScale(here().scale);
+  const std::string text =
+      scaleText(result.scale) + (result.world == world_ ? "" : ", in a map that the camera is not in now");
+  log_.tell(text);
+  return {true, text};
 }
 
 // What was set by command, or came with a saved map, stays until there is another map.
 bool MetricScale::everySecond(double seconds, bool has_points) {
-  const std::optional<ScaleState> found = search_.everySecond();
-  if (kind_ == ScaleKind::known_distance) return false;
+  ScaleSearch& search = here().search;
+  const std::optional<ScaleState> found = search.everySecond();
+  if (here().scale.kind == ScaleKind::known_distance) return false;
   if (found) take(*found);
   tellProblem();
-  if (!search_.wantsMap(seconds) || !has_points) return false;
-  search_.mapComes(seconds);
+  if (!search.wantsMap(seconds) || !has_points) return false;
+  search.mapComes(seconds);
   ground_wanted_ = true;
   return true;
 }
 
 void MetricScale::take(const ScaleState& found) {
   if (!isKnown()) log_.tell(scaleText(found));
-  kind_ = found.kind;
+  here().scale = found;
   publisher_.setScale(found);
 }
 
 std::string MetricScale::problem() const {
-  if (kind_ == ScaleKind::known_distance) return "";
-  const std::string problem = search_.problem();
+  if (here().scale.kind == ScaleKind::known_distance) return "";
+  const std::string problem = here().search.problem();
   const std::int64_t ignored = publisher_.odometryIgnored();
   if (problem.empty() || ignored == 0) return problem;
   return problem + " (" + std::to_string(ignored) + " messages of it were no pose of a body, or came too many at once)";
@@ -113,12 +150,13 @@ void MetricScale::tellProblem() {
 void MetricScale::mapCame(const std::shared_ptr<const Map>& map) {
   if (!std::exchange(ground_wanted_, false) || map->keyframes.empty()) return;
   const KeyframeId latest = map->keyframes.back().id;
+  if (keyframeRecords(*map, latest).front().world != world_) return;  // the ground is looked for around the latest
   if (std::exchange(ground_keyframe_, latest) == latest) return;
   work_.begin([this, map, body_T_camera = body_T_camera_, height = options_.height,
                looks_void = ground_looks_void_]() -> BackgroundWork::Completion {
     const GroundPlane ground = groundOf(*map, body_T_camera, height);
     return [this, ground, looks_void] {
-      if (looks_void == ground_looks_void_) search_.add(ground);
+      if (looks_void == ground_looks_void_) here().search.add(ground);
     };
   });
 }

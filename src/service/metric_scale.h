@@ -1,8 +1,9 @@
-// The metric scale of the map that the run is in: set by command, come with a saved map, or found by itself. Poses go
-// out with it, and the log is told of it.
+// The metric scale of the world that the camera is in: set by command, come with a saved map, or found by itself. Each
+// world has its own, which is there again where the camera comes back. Poses go out with it, and the log is told of it.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -25,13 +26,17 @@ class MetricScale {
   MetricScale(const ScaleOptions& options, const Pose& body_T_camera, LcmPublisher& publisher, BackgroundWork& work,
               EventLog& log);
 
-  // Another map was begun: the scale was that of a map that is no more.
+  // Another map was begun: the scales were those of maps that are no more.
   void forget();
+  // The next map is being looked for: lengths have no unit that is known. Those of the worlds there are stay.
+  void noMap();
+  // Of each frame, before it is published: poses of another world than before have that one's scale.
+  void enterWorld(const FrameResult& result);
   // A saved map is continued: what the configuration says of its scale.
   void takeConfigured();
   // By a loop: positions before and after do not go together.
   void mapWasCorrected();
-  bool isKnown() const { return kind_ != ScaleKind::unknown; }
+  bool isKnown() const { return here().scale.kind != ScaleKind::unknown; }
 
   // Each frame, in order.
   void frame(const FrameResult& result);
@@ -51,6 +56,17 @@ class MetricScale {
   std::string problem() const;
 
  private:
+  static constexpr int no_world = -1;
+
+  struct WorldScale {
+    ScaleSearch search;
+    ScaleState scale;
+  };
+
+  const WorldScale& here() const { return worlds_.at(world_); }
+  WorldScale& here() { return worlds_.at(world_); }
+  void begin(int world);
+  void forgetWhatIsUnderWay();
   void take(const ScaleState& found);
   void tellProblem();
 
@@ -60,8 +76,8 @@ class MetricScale {
   BackgroundWork& work_;
   EventLog& log_;
   PositionHistory history_;
-  ScaleSearch search_;
-  ScaleKind kind_ = ScaleKind::unknown;
+  std::map<int, WorldScale> worlds_;     // by number; that of no world yet, too
+  int world_ = no_world;                 // that the last pose was in
   bool ground_wanted_ = false;           // of the map that was asked for
   KeyframeId ground_keyframe_ = -1;      // the latest of the map in which it was looked for
   std::int64_t ground_looks_void_ = 0;   // counts what makes looks under way worthless

@@ -9,6 +9,10 @@ void RunLog::report(const MappingReport& report) {
   }
 }
 
+void RunLog::tellWorld(std::int64_t frame_index, const std::string& change) {
+  log_.tell("frame " + std::to_string(frame_index) + ": " + change);
+}
+
 void RunLog::tellChanges(const std::string& state, const std::string& lcm_problem) {
   if (!state.empty() && state != told_state_) {
     told_state_ = state;

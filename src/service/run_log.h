@@ -1,6 +1,8 @@
-// What the log is told of a run as it goes: changes of its state, messages that do not go out, and what mapping found.
+// What the log is told of a run as it goes: changes of its state, changes of its world, messages that do not
+// go out, and what mapping found.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "pipeline/messages.h"
@@ -16,6 +18,8 @@ class RunLog {
 
   // Loops, and frames that were found again.
   void report(const MappingReport& report);
+  // The camera is in another world from this frame on.
+  void tellWorld(std::int64_t frame_index, const std::string& change);
   // Each second, so that there is at most a line of each kind a second. Empty `state`: none to tell; empty
   // `lcm_problem`: messages go out.
   void tellChanges(const std::string& state, const std::string& lcm_problem);

@@ -28,7 +28,10 @@ void RunPublisher::begin(LiveRun& run, std::shared_ptr<FlightRecorder> recorder,
   map_.begin(run);
   saving_.begin(run);
   if (viewer_) run.showTo(viewer_->looks());
-  if (start != RunStart::same_map) scale_.forget();
+  if (start != RunStart::same_map) {
+    scale_.forget();
+    worlds_.begin();
+  }
   if (start == RunStart::saved_map) scale_.takeConfigured();
 }
 
@@ -59,11 +62,14 @@ LiveObserver RunPublisher::observer() {
 
 void RunPublisher::frame(const FrameResult& result, const std::string& problem) {
   const bool is_initialising = result.state == TrackingState::initialising;
-  if (is_initialising && (state_ != TrackingState::initialising || scale_.isKnown())) scale_.forget();
+  if (is_initialising && (state_ != TrackingState::initialising || scale_.isKnown())) scale_.noMap();
+  scale_.enterWorld(result);
   publisher_.frame(result);
   if (viewer_) viewer_->frame(result);
   service_.alive(Clock::now());
   scale_.frame(result);
+  if (const std::optional<std::string> change = worlds_.frame(result)) log_.tellWorld(result.index, *change);
+  map_.enterWorld(worlds_.world());
   totals_.frame(/*is_readable=*/problem.empty());
   state_ = result.state;
   reason_ = result.reason;
@@ -125,6 +131,7 @@ void RunPublisher::tellChanges(const PublisherStatus& status) {
 PublisherStatus RunPublisher::status() const {
   PublisherStatus status;
   totals_.fill(status);
+  status.worlds = worlds_.count();
   status.uptime_ms = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start_).count();
   status.version = EDGESLAM_VERSION;
   status.frames_dropped += link_.lost();

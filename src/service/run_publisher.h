@@ -24,6 +24,7 @@
 #include "service/run_recording.h"
 #include "service/run_totals.h"
 #include "service/service_notification.h"
+#include "service/world_watch.h"
 
 namespace edgeslam {
 
@@ -75,6 +76,7 @@ class RunPublisher {
   RunRecording recording_;
   RunCommands commands_;
   RunTotals totals_;
+  WorldWatch worlds_;
   RunLog log_;
 
   LiveRun* run_ = nullptr;

@@ -6,6 +6,7 @@
 
 #include "edges/edge_detection.h"
 #include "map/keyframe.h"
+#include "tracking/measured_noise.h"
 #include "tracking/track.h"
 
 namespace edgeslam {
@@ -18,6 +19,7 @@ struct FollowedFrame {
   Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation], in the map as it is
   int inlier_count = 0;                    // map points that agree with the pose
   double outlier_share = 0;                // of the map points in view
+  NoiseEvidence noise;                     // what the map points in view say, be the pose believed or not
 
   // False before the first frame, and after forget().
   bool isThere() const { return images != nullptr; }

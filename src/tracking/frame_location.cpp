@@ -31,6 +31,9 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   refineTracks(camera_, view, to, first.result.world_T_camera, scene_depth, options_.refinement, frame.tracks);
   clock.finished(Stage::refinement);
   const FramePose pose = estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory);
+  // What the points say of the noise they say of a pose that is refused as well: else it could not rise when it
+  // matters.
+  if (view.initialised) frame.noise = noiseEvidence(pose.result.errors_across, &memory);
   if (!pose.result.converged) return false;
   // A flat map fits a scene with depth only here and there: before the map stands every pose is believed.
   const AcceptanceContext context{last.inlier_count, prior.regains, scene_depth};

@@ -38,14 +38,17 @@ bool FramePreparation::prepare(std::int64_t frame_index, std::int64_t time_ns, c
   clock.finished(Stage::pyramid);
   if (!frame.edges || frame.edges.use_count() > 1) frame.edges = edge_pool_.take();
   detectEdges(images->pyramid.levels[0], options_.edges, workspace_, *frame.edges);
+  const double noise_factor = accuracy_.noise_factor;
   accuracy_ = accuracyIn(images->pyramid.levels[0], options_.accuracy);
+  accuracy_.noise_factor = noise_factor;
   clock.finished(Stage::edges);
   frame.tracks.clear();
   frame.covariance.setZero();
   frame.inlier_count = 0;
   frame.outlier_share = 0;
+  frame.noise = NoiseEvidence();
   frame.images = latest_images_ = std::move(images);
-  return !isBlurred(blur_gate_, sharpness(grey, *frame.edges), options_.blur_gate);
+  return !isBlurred(blur_gate_, {time_ns, sharpness(grey, *frame.edges)}, options_.blur_gate);
 }
 
 }  // namespace edgeslam

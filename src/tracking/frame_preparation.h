@@ -31,8 +31,11 @@ class FramePreparation {
 
   // Of the last frame prepared; null before the first.
   const std::shared_ptr<const FrameImages>& latestImages() const { return latest_images_; }
-  // How exactly points in it are measured.
+  // How exactly points in it are measured, and the frames to come.
   const PointAccuracy& accuracy() const { return accuracy_; }
+  // The camera is elsewhere: what was sharp there says nothing here.
+  void forgetSharpness() { blur_gate_ = {}; }
+  void setNoiseFactor(double factor) { accuracy_.noise_factor = factor; }
 
   // Makes images ready for frames to come, in place of those that keyframes keep; for another thread.
   void keepReady(int count) { image_pool_.keepReady(count); }

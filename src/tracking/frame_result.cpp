@@ -29,11 +29,13 @@ void clear(FrameResult& result) {
   result.state = TrackingState::initialising;
   result.reason.clear();
   result.has_pose = false;
+  result.world = -1;
   result.world_T_camera = result.reference_T_camera = Pose();
   result.covariance.setZero();
   result.world_covariance.setZero();
   result.reference = -1;
   result.tracked_points = result.mapped_points = 0;
+  result.noise_factor = 1;
   result.times = StageTimes();
   result.latency_ms = -1;
 }

@@ -32,14 +32,16 @@ struct FrameResult {
   TrackingState state = TrackingState::initialising;
   std::string reason;  // why it is not `tracking`, or empty
   bool has_pose = false;
+  int world = -1;       // that the pose is in: counted from 0, one more where a new map was begun; -1: none
   Pose world_T_camera;  // map units; measured, or from motion alone where the state says so
   // Of the right-hand update [translation; rotation]: of the pose in the map as it is, and of the pose in the world, in
   // which the map itself may have drifted since its first keyframe.
   Matrix6d covariance = Matrix6d::Zero(), world_covariance = Matrix6d::Zero();
   KeyframeId reference = -1;  // the keyframe that carries this frame's final pose, or -1
   Pose reference_T_camera;
-  int tracked_points = 0;  // points followed in the image
-  int mapped_points = 0;   // map points that agree with the pose
+  int tracked_points = 0;   // points followed in the image
+  int mapped_points = 0;    // map points that agree with the pose
+  double noise_factor = 1;  // how many times as far as presumed of a good camera measurements err (measured_noise.h)
   StageTimes times;
   double latency_ms = -1;  // of a live run: from the frame's handing over by capture to its pose; negative: not known
 };

@@ -37,11 +37,11 @@ void KeyframeMaking::goOnFrom(KeyframeId next_keyframe, PointId next_point) {
 }
 
 void KeyframeMaking::choosePointsOfFirst(FollowedFrame& frame, const PointAccuracy& accuracy) {
-  next_keyframe_ = 0;
+  next_keyframe_ = first_of_world_ + 1;
   frame.tracks.clear();
   frame.world_T_camera = Pose();
   frame.inlier_count = 0;
-  choosePointsIn(frame, 0, accuracy);
+  choosePointsIn(frame, first_of_world_, accuracy);
 }
 
 KeyframeDecision KeyframeMaking::judge(const MapView& view, const FollowedFrame& frame) const {
@@ -56,7 +56,7 @@ KeyframeDecision KeyframeMaking::judge(const MapView& view, const FollowedFrame&
   evidence.mapped = frame.inlier_count;
   evidence.mapped_at_keyframe = most_mapped_;
   evidence.seconds = static_cast<double>(frame.images->time_ns - time_ns_) * 1e-9;
-  evidence.frames = frames_;
+  evidence.too_soon = frame.images->time_ns < earliest_ns_;
   return selectKeyframe(evidence, camera_.width, options_);
 }
 
@@ -68,6 +68,7 @@ KeyframeId KeyframeMaking::make(FollowedFrame& frame, const PointAccuracy& accur
   }
   choosePointsIn(frame, next_keyframe_, accuracy);
   time_ns_ = frame.images->time_ns;
+  earliest_ns_ = time_ns_ + static_cast<std::int64_t>(options_.least_interval_s * 1e9);
   frames_ = 0;
   most_mapped_ = 0;
   return next_keyframe_++;
@@ -83,8 +84,8 @@ void KeyframeMaking::follow(const FollowedFrame& frame) {
 }
 
 void KeyframeMaking::askForOne(const FollowedFrame& last) {
-  time_ns_ = last.images->time_ns;
-  frames_ = options_.least_frames_apart;
+  time_ns_ = earliest_ns_ = last.images->time_ns;
+  frames_ = 0;
   most_mapped_ = options_.fewest_mapped * 2;
 }
 

@@ -19,10 +19,11 @@ class KeyframeMaking {
   // A map is there already: keyframes and points get the numbers after its own.
   void goOnFrom(KeyframeId next_keyframe, PointId next_point);
 
-  // The frame's own points, as those of a map's first keyframe; what was tracked in it is forgotten.
+  // Another world: the numbers that were given go on being those of the ones before.
+  void beginWorld() { first_of_world_ = next_keyframe_; }
+  // The frame's own points, as those of a world's first keyframe; what was tracked in it is forgotten.
   void choosePointsOfFirst(FollowedFrame& frame, const PointAccuracy& accuracy);
-  // It started a map.
-  void startedMap() { next_keyframe_ = 1; }
+  KeyframeId firstOfWorld() const { return first_of_world_; }
 
   // P8 to P12, for a frame that is located in `view`.
   KeyframeDecision judge(const MapView& view, const FollowedFrame& frame) const;
@@ -53,10 +54,12 @@ class KeyframeMaking {
   std::vector<ChosenPoint> chosen_;
   PointId next_point_ = 0;
   KeyframeId next_keyframe_ = 0;
-  std::int64_t time_ns_ = 0;   // of the last keyframe
-  int frames_ = 0;             // since then
-  int most_mapped_ = 0;        // likewise
-  double average_tracks_ = 0;  // running average over the frames
+  KeyframeId first_of_world_ = 0;
+  std::int64_t time_ns_ = 0;      // of the last keyframe
+  std::int64_t earliest_ns_ = 0;  // of the next one
+  int frames_ = 0;                // since then
+  int most_mapped_ = 0;           // likewise
+  double average_tracks_ = 0;     // running average over the frames
 };
 
 }  // namespace edgeslam

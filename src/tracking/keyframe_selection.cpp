@@ -5,7 +5,7 @@
 namespace edgeslam {
 
 KeyframeDecision selectKeyframe(const KeyframeEvidence& evidence, int image_width, const KeyframeOptions& options) {
-  if (evidence.frames < options.least_frames_apart) return {};
+  if (evidence.too_soon) return {};
   if (evidence.rotation_deg > options.rotation_deg) return {KeyframeChoice::previous_frame, "rotation"};
   if (evidence.tracks < options.track_share * evidence.average_tracks)
     return {KeyframeChoice::previous_frame, "few tracks"};

@@ -7,7 +7,7 @@ namespace edgeslam {
 
 struct KeyframeOptions {
   double rotation_deg = 15;   // P8: rotation to the last keyframe [deg]
-  double track_share = 0.3;   // P9: correspondences left, as a share of the running average
+  double track_share = 0.6;   // P9: correspondences left, as a share of the running average, which falls with them
   int fewest_mapped = 250;    // P10: 3D-2D correspondences ...
   double mapped_share = 0.6;  // ... or this share of the most since the last keyframe, if less: bare scenes stay calm
   double displacement_share = 0.2;  // P11: mean displacement, as a share of the image's width
@@ -15,7 +15,9 @@ struct KeyframeOptions {
   // ... if the image moved by this share of its width, rotation included: a camera that stands still learns nothing
   // from another keyframe, and would lose those that it knows its place by.
   double least_displacement_share = 0.005;
-  int least_frames_apart = 3;  // no two keyframes nearer than this [frames]
+  // No two keyframes nearer than this: every third frame at 30 frames/s, a little less than their distance, as time
+  // stamps jitter.
+  double least_interval_s = 0.09;
 };
 
 // What the criteria look at.
@@ -27,7 +29,7 @@ struct KeyframeEvidence {
   int mapped = 0;              // 3D-2D correspondences
   int mapped_at_keyframe = 0;  // the most there were since the last keyframe
   double seconds = 0;          // since the last keyframe
-  int frames = 0;              // likewise
+  bool too_soon = false;       // after the last keyframe
 };
 
 enum class KeyframeChoice { none, previous_frame, current_frame };

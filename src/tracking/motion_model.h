@@ -17,6 +17,8 @@ class MotionModel {
  public:
   // `before` and `now`: two frames that were located one after the other, in the same world.
   void observe(const TimedCamera& before, const TimedCamera& now);
+  // Lengths are in another unit from now on: so many of it an old one.
+  void scale(double new_units_an_old_unit) { before_T_now_.translation *= new_units_an_old_unit; }
   // Nothing is known of the motion: the camera is taken to stand.
   void forget();
 

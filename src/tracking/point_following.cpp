@@ -9,6 +9,8 @@
 namespace edgeslam {
 namespace {
 
+constexpr double largest_move_by_distance = 0.25;  // share of the image's width
+
 // Marks taken pixels, to find points nearer than a distance to one that was kept.
 class Occupancy {
  public:
@@ -73,12 +75,17 @@ AlignmentPoints placeTracks(const Camera& camera, const std::vector<Track>& trac
 Pixels predictPixels(const Camera& camera, const AlignmentPoints& points, const Pose& world_T_last,
                      const Pose& world_T_predicted, std::pmr::memory_resource* memory) {
   const Pose predicted_T_world = world_T_predicted.inverse();
+  const double most_by_distance = largest_move_by_distance * camera.width;
+  const auto projected = [&](const AlignmentPoint& point, const Eigen::Vector3d& predicted) {
+    const bool before_camera = predicted.z() > 0.01 * point.position.norm();
+    return before_camera ? Eigen::Vector2f(project(camera, predicted).cast<float>()) : point.pixel;
+  };
   Pixels predictions(memory);
   predictions.reserve(points.size());
   for (const AlignmentPoint& point : points) {
-    const Eigen::Vector3d predicted = predicted_T_world * (world_T_last * point.position);
-    const bool before_camera = predicted.z() > 0.01 * point.position.norm();
-    predictions.push_back(before_camera ? Eigen::Vector2f(project(camera, predicted).cast<float>()) : point.pixel);
+    const Eigen::Vector2f there = projected(point, predicted_T_world * (world_T_last * point.position));
+    const Eigen::Vector2f far = projected(point, predicted_T_world.rotation * (world_T_last.rotation * point.position));
+    predictions.push_back((there - far).norm() <= most_by_distance ? there : far);
   }
   return predictions;
 }

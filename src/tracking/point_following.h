@@ -20,7 +20,8 @@ AlignmentPoints placeTracks(const Camera& camera, const std::vector<Track>& trac
                             const Pose& world_T_last, double scene_depth,
                             std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-// Where each point should be seen after the camera moved; one that would be behind it, where it was.
+// Where each point should be seen after the camera moved; one that would be behind it, where it was. One that its
+// distance would move by over a quarter of the image's width is taken to be as far as can be: its distance is wrong.
 using Pixels = std::pmr::vector<Eigen::Vector2f>;
 
 Pixels predictPixels(const Camera& camera, const AlignmentPoints& points, const Pose& world_T_last,

@@ -84,6 +84,7 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
   // What is not mapped helps the pose, but says nothing of how much of the map is found again.
   observations.resize(mapped);
   pose.result.inliers.resize(mapped);
+  pose.result.errors_across.resize(mapped);
   pose.result.inlier_count = static_cast<int>(std::count(pose.result.inliers.begin(), pose.result.inliers.end(), 1));
   if (pose.result.inlier_count < options.fewest) pose.result.converged = false;
   const auto agree = static_cast<double>(pose.result.inlier_count), visible = static_cast<double>(mapped);

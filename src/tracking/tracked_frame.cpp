@@ -9,6 +9,8 @@ void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole&
   description.kind = role.kind;
   description.keyframe = role.keyframe;
   description.reason = role.reason;
+  description.noise_factor = role.noise_factor;
+  description.world = role.world;
   description.images = role.kind == FrameKind::start ? nullptr : frame.images;
   description.observations.clear();
   for (const Track& track : frame.tracks) {

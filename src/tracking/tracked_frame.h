@@ -12,6 +12,8 @@ struct FrameRole {
   FrameKind kind = FrameKind::start;
   KeyframeId keyframe = -1;  // its number, or -1
   const char* reason = "";   // which criterion made it a keyframe
+  double noise_factor = 1;   // of what is measured in it
+  int world = 0;             // that its pose is in, or the last pose was in
 };
 
 // Writes over `description`, with its memory. A frame that only helps a start has no images in it.

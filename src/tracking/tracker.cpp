@@ -1,7 +1,10 @@
 #include "tracking/tracker.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
+
+#include "geometry/similarity.h"
 
 namespace edgeslam {
 namespace {
@@ -14,14 +17,43 @@ int pyramidLevels(const TrackerOptions& options) {
   return std::max(options.location.flow.levels, least_pyramid_levels);
 }
 
-// How the world moved from one view to the next, by the latest keyframe that both know.
-Pose newWorldTOldWorld(const MapView& old_view, const MapView& new_view) {
+// Where the latest keyframe that both know is in the one view and in the other; null where they share none.
+struct SharedKeyframes {
+  const ViewKeyframe *in_old = nullptr, *in_new = nullptr;
+};
+
+SharedKeyframes latestShared(const MapView& old_view, const MapView& new_view) {
   for (std::size_t place = new_view.keyframes.size(); place-- > 0;) {
     const ViewKeyframe& keyframe = new_view.keyframes.atPlace(place);
-    const ViewKeyframe* before = old_view.keyframes.find(keyframe.id);
-    if (before) return keyframe.world_T_camera * before->world_T_camera.inverse();
+    if (const ViewKeyframe* in_old = old_view.keyframes.find(keyframe.id)) return {in_old, &keyframe};
   }
-  return Pose();
+  return {};
+}
+
+// How much longer lengths became where a world was joined to another: that between the keyframes that are farthest
+// apart of those that both know. Otherwise what changes with drift is left to the next pose.
+double newUnitsAnOldUnit(const MapView& old_view, const MapView& new_view, const SharedKeyframes& latest) {
+  if (old_view.world == new_view.world) return 1;
+  double farthest = 0, ratio = 1;
+  for (const ViewKeyframe& keyframe : new_view.keyframes) {
+    const ViewKeyframe* before = old_view.keyframes.find(keyframe.id);
+    if (!before) continue;
+    const double old_distance = (before->world_T_camera.translation - latest.in_old->world_T_camera.translation).norm();
+    if (old_distance <= farthest) continue;
+    farthest = old_distance;
+    ratio = (keyframe.world_T_camera.translation - latest.in_new->world_T_camera.translation).norm() / old_distance;
+  }
+  return ratio;
+}
+
+// How the world moved from one view to the next; nothing where they are of different worlds.
+std::optional<Similarity> newWorldSOldWorld(const MapView& old_view, const MapView& new_view) {
+  const SharedKeyframes latest = latestShared(old_view, new_view);
+  if (!latest.in_new) return std::nullopt;
+  const Pose &new_pose = latest.in_new->world_T_camera, &old_pose = latest.in_old->world_T_camera;
+  const double scale = newUnitsAnOldUnit(old_view, new_view, latest);
+  const Eigen::Quaterniond rotation = (new_pose.rotation * old_pose.rotation.conjugate()).normalized();
+  return Similarity{scale, rotation, new_pose.translation - scale * (rotation * old_pose.translation)};
 }
 
 }  // namespace
@@ -34,6 +66,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       preparation_(camera, {edges, points.accuracy, options.blur_gate, pyramidLevels(options)}),
       location_(camera, options.location),
       keyframes_(camera, options.keyframes, points),
+      noise_(options.noise),
       scratch_memory_(scratch_size),
       scratch_(scratch_memory_.data(), scratch_memory_.size()) {
   for (FollowedFrame* frame : {&frame_, &last_, &kept_}) frame->tracks.reserve(most_found_again);
@@ -42,7 +75,9 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
 
 void Tracker::startLost(const MapView& view, PointId first_free_point) {
   view_ = view;
-  keyframes_.goOnFrom(view.keyframes.back().id + 1, first_free_point);
+  worlds_ = 1;
+  last_world_ = view.world;
+  keyframes_.goOnFrom(view.latest_keyframe + 1, first_free_point);
 }
 
 bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, bool mapping_busy,
@@ -54,18 +89,23 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   Work work{time_ns, mapping_busy, result, for_mapping, StageClock(result.times)};
 
   const bool is_sharp = preparation_.prepare(frame_index, time_ns, grey, frame_, work.clock);  // P1 to P4
-  if (!is_sharp && last_.isThere()) {
+  const double without_s = lost_since_ns_ < 0 ? 0 : static_cast<double>(time_ns - lost_since_ns_) * 1e-9;
+  const bool any_will_do = !mapStands() || is_lost_ || without_s > options_.blur_gate.longest_rejection_s;
+  if (!is_sharp && !any_will_do) {
     beLostSince(time_ns);
     predict(time_ns, "blurred image", result);
     return false;
   }
+  if (isToBeginWorld(time_ns)) beginWorld();
   if (!mapStands() && !last_.isThere()) return startMap("first frame of the map", work);
 
   bool located = locate(work);  // P5, P6, P16
+  measureNoise();
   if (!mapStands() && (!located || tooFewAreLeft())) {
     return startMap("starting anew: too few of the first frame's points are left", work);  // P13
   }
-  const bool is_told = mapStands() && located && !mapping_busy && selectKeyframe(located, work);  // P8 to P12
+  const bool is_told =
+      is_sharp && mapStands() && located && !mapping_busy && selectKeyframe(located, work);  // P8 to P12
   if (!located) {
     lose("map points not found again", work);
     return is_told;
@@ -88,8 +128,38 @@ bool Tracker::locate(Work& work) {
   return location_.locate(last_, view_, prior, frame_, scratch_, work.clock);
 }
 
-bool Tracker::tooFewAreLeft() const {
-  return static_cast<double>(frame_.tracks.size()) < options_.restart_share * static_cast<double>(tracks_at_start_);
+// What is measured from now on, and what was measured already and is looked at again, counts as it says.
+void Tracker::measureNoise() {
+  const double change = noise_.observe(frame_.noise);
+  if (change == 1) return;
+  preparation_.setNoiseFactor(noise_.factor());
+  for (std::vector<Track>* tracks : {&frame_.tracks, &last_.tracks}) {
+    for (Track& track : *tracks) {
+      track.sigma_normal *= static_cast<float>(change);
+      track.sigma_tangent *= static_cast<float>(change);
+    }
+  }
+}
+
+bool Tracker::tooFewAreLeft() {
+  const auto left = static_cast<double>(frame_.tracks.size());
+  const bool is_faded = left < options_.restart_share * static_cast<double>(tracks_at_start_);
+  faded_frames_ = is_faded ? faded_frames_ + 1 : 0;
+  return faded_frames_ >= options_.restart_frames || left < options_.fewest_tracks;
+}
+
+bool Tracker::isToBeginWorld(std::int64_t time_ns) const {
+  if (!options_.worlds_enabled || !mapStands() || lost_since_ns_ < 0) return false;
+  return static_cast<double>(time_ns - lost_since_ns_) * 1e-9 > options_.new_world_seconds;
+}
+
+// What was there is no longer tracked, but is looked for.
+void Tracker::beginWorld() {
+  view_.initialised = false;
+  is_lost_ = false;
+  lost_since_ns_ = -1;
+  last_.forget();
+  keyframes_.beginWorld();
 }
 
 bool Tracker::startMap(const char* reason, Work& work) {
@@ -109,10 +179,10 @@ bool Tracker::startMap(const char* reason, Work& work) {
     return false;
   }
   work.result.reason = reason;
-  keyframes_.startedMap();
-  describe(camera_, frame_, {FrameKind::first, 0, "first"}, work.for_mapping);
+  describe(camera_, frame_, {FrameKind::first, keyframes_.firstOfWorld(), "first"}, work.for_mapping);
   makeFlatView(work.for_mapping, view_);
   tracks_at_start_ = frame_.tracks.size();
+  faded_frames_ = 0;
   motion_.forget();
   std::swap(last_, frame_);
   return true;
@@ -138,7 +208,7 @@ bool Tracker::selectKeyframe(bool& located, Work& work) {
 void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work) {
   reuseMap(frame);
   const KeyframeId id = keyframes_.make(frame, preparation_.accuracy());
-  describe(camera_, frame, {FrameKind::keyframe, id, reason}, work.for_mapping);
+  describe(camera_, frame, {FrameKind::keyframe, id, reason, noise_.factor(), view_.world}, work.for_mapping);
   // Until mapping answers, the keyframe stands where tracking saw it.
   view_.keyframes.push_back({id, frame.world_T_camera, nullptr});
   work.clock.finished(Stage::choice_of_points);
@@ -159,6 +229,7 @@ void Tracker::reuseMap(FollowedFrame& frame) {
 
 void Tracker::tell(Work& work) {
   FrameResult& result = work.result;
+  result.noise_factor = noise_.factor();
   result.world_T_camera = frame_.world_T_camera;
   result.covariance = frame_.covariance;
   result.tracked_points = static_cast<int>(frame_.tracks.size());
@@ -171,13 +242,21 @@ void Tracker::tell(Work& work) {
   map_covariance_ = mapUncertaintyAt(view_, frame_.tracks, frame_.world_T_camera, &scratch_);
   result.state = TrackingState::tracking;
   result.has_pose = true;
-  result.world_covariance =
-      worldCovariance(camera_, frame_.covariance, map_covariance_, frame_.outlier_share, options_.uncertainty);
+  result.world = last_world_ = view_.world;
+  result.world_covariance = worldCovariance(camera_, withSharedNoise(frame_.covariance), map_covariance_,
+                                            frame_.outlier_share, options_.uncertainty);
   result.reference = view_.keyframes.back().id;
   result.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * frame_.world_T_camera;
 }
 
+// What makes a camera err more than presumed makes neighbouring points err alike: many of them say no more than a few.
+Matrix6d Tracker::withSharedNoise(const Matrix6d& covariance) const {
+  return noise_.factor() * noise_.factor() * covariance;
+}
+
 void Tracker::remember() {
+  if (is_lost_) preparation_.forgetSharpness();
+  is_lost_ = false;
   lost_since_ns_ = -1;
   motion_.observe(lastCamera(), {frame_.images->time_ns, frame_.world_T_camera});
   keyframes_.follow(frame_);
@@ -197,19 +276,21 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult
   if (!last_.isThere() || !mapStands()) return;
   result.state = TrackingState::predicted;
   result.has_pose = true;
+  result.world = view_.world;
   result.world_T_camera = motion_.predict(lastCamera(), time_ns);
   const double seconds = static_cast<double>(time_ns - last_.images->time_ns) * 1e-9;
   result.covariance = MotionModel::predictedCovariance(last_.covariance, seconds);
-  result.world_covariance =
-      worldCovariance(camera_, result.covariance, map_covariance_, last_.outlier_share, options_.uncertainty);
+  result.world_covariance = worldCovariance(camera_, withSharedNoise(result.covariance), map_covariance_,
+                                            last_.outlier_share, options_.uncertainty);
 }
 
 void Tracker::lose(const char* reason, Work& work) {
   predict(work.time_ns, reason, work.result);
   work.result.state = TrackingState::lost;
   work.result.has_pose = false;
+  work.result.world = -1;
   beLostSince(work.time_ns);
-  frame_is_lost_ = true;
+  frame_is_lost_ = is_lost_ = true;
 }
 
 void Tracker::beLostSince(std::int64_t time_ns) {
@@ -226,7 +307,15 @@ const EdgeMap* Tracker::latestEdges() const {
 void Tracker::keepLostFrame(TrackedFrame& description) {
   std::swap(kept_, frame_);
   frame_is_lost_ = false;
-  describe(camera_, kept_, {FrameKind::lost, keyframes_.numberOfLost(), "recovery"}, description);
+  describe(camera_, kept_, {FrameKind::lost, keyframes_.numberOfLost(), "recovery", noise_.factor(), last_world_},
+           description);
+}
+
+void Tracker::keepStartingFrame(TrackedFrame& description) {
+  kept_.images = last_.images;
+  kept_.edges = last_.edges;
+  kept_.tracks.clear();
+  describe(camera_, kept_, {FrameKind::lost, -1, "", noise_.factor(), last_world_}, description);
 }
 
 void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& covariance,
@@ -241,31 +330,39 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   last_.inlier_count = 0;
   std::swap(view_, view);
   motion_.forget();
+  is_lost_ = false;
   lost_since_ns_ = -1;
-  keyframes_.seen(view_.keyframes.back().id);
+  preparation_.forgetSharpness();
+  keyframes_.seen(view_.latest_keyframe);
   keyframes_.forgetAverage();
   keyframes_.askForOne(last_);
 }
 
 void Tracker::adopt(MapView& view) {
-  if (view.version <= view_.version && view.origin_frame == view_.origin_frame) return;
-  if (!last_.isThere() || view.origin_frame != view_.origin_frame) return;
+  if (!last_.isThere() || view.version <= view_.version) return;
+  const bool is_of_this_start = !mapStands() && view.origin_frame == view_.origin_frame;
+  const bool is_of_this_map = mapStands() && view.initialised;
+  if (!is_of_this_start && !is_of_this_map) return;
+  const std::optional<Similarity> new_S_old = newWorldSOldWorld(view_, view);
+  if (!new_S_old) return;
   const bool is_first = view.initialised && !mapStands();
   // What mapping has not seen yet keeps its place relative to the latest keyframe known to both.
-  const Pose new_T_old = newWorldTOldWorld(view_, view);
   const KeyframeId latest = view.keyframes.back().id;
   for (const ViewKeyframe& keyframe : view_.keyframes) {
-    if (keyframe.id > latest) view.keyframes.push_back({keyframe.id, new_T_old * keyframe.world_T_camera, nullptr});
+    if (keyframe.id > latest)
+      view.keyframes.push_back({keyframe.id, moved(*new_S_old, keyframe.world_T_camera), nullptr});
   }
   std::swap(view_, view);
-  const Pose moved = new_T_old * last_.world_T_camera;
+  motion_.scale(new_S_old->scale);
+  const Pose moved_pose = moved(*new_S_old, last_.world_T_camera);
   if (is_first) {
-    keyframes_.seen(view_.keyframes.back().id);
+    ++worlds_;
+    keyframes_.seen(view_.latest_keyframe);
     keyframes_.askForOne(last_);
   }
   scratch_.release();
-  const FramePose again = estimatePose(camera_, view_, last_.tracks, moved, options_.location.pose, &scratch_);
-  last_.world_T_camera = again.result.converged ? again.result.world_T_camera : moved;
+  const FramePose again = estimatePose(camera_, view_, last_.tracks, moved_pose, options_.location.pose, &scratch_);
+  last_.world_T_camera = again.result.converged ? again.result.world_T_camera : moved_pose;
 }
 
 }  // namespace edgeslam

@@ -18,6 +18,7 @@
 #include "tracking/frame_result.h"
 #include "tracking/keyframe_making.h"
 #include "tracking/map_reuse.h"
+#include "tracking/measured_noise.h"
 #include "tracking/motion_model.h"
 #include "tracking/stage_times.h"
 #include "tracking/tracked_frame.h"
@@ -31,9 +32,13 @@ struct TrackerOptions {
   MapReuseOptions map_reuse;
   KeyframeOptions keyframes;
   WorldUncertaintyOptions uncertainty;
+  MeasuredNoiseOptions noise;
   int fewest_tracks = 30;       // fewer are not enough to start a map with
-  double restart_share = 0.3;   // of the first frame's tracks: fewer left, and the initialisation starts anew
+  double restart_share = 0.3;   // of the first frame's tracks: fewer left, and the initialisation starts anew ...
+  int restart_frames = 4;       // ... after so many such frames: mapping may be about to answer [frames]
   double regain_seconds = 0.7;  // so long after a loss the last tracked frame's points are still looked for
+  bool worlds_enabled = true;
+  double new_world_seconds = 1;  // so long after a loss a new world is begun beside those that were lost
 };
 
 class Tracker {
@@ -62,6 +67,9 @@ class Tracker {
   // pose, and the keyframe number that is its if mapping makes it one.
   bool hasLostFrame() const { return frame_is_lost_; }
   void keepLostFrame(TrackedFrame& description);
+  // While a world is begun beside others: the latest frame is kept, and described, to be looked for in these.
+  bool startsBesideOthers() const { return worlds_ > 0 && !mapStands() && last_.isThere(); }
+  void keepStartingFrame(TrackedFrame& description);
   std::shared_ptr<const EdgeMap> keptEdges() const { return kept_.edges; }
   // The kept frame's pose was found after all: tracking goes on from it with the points found, or, where none are
   // given, with the tracks that it had. `view` shows the map around it; the view before is left in its place.
@@ -96,13 +104,17 @@ class Tracker {
   TimedCamera lastCamera() const { return {last_.images->time_ns, last_.world_T_camera}; }
 
   bool locate(Work& work);
+  void measureNoise();
+  bool isToBeginWorld(std::int64_t time_ns) const;
+  void beginWorld();
   bool startMap(const char* reason, Work& work);
-  bool tooFewAreLeft() const;
+  bool tooFewAreLeft();
   bool selectKeyframe(bool& located, Work& work);
   void becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work);
   void reuseMapWhenDue(Work& work);
   void reuseMap(FollowedFrame& frame);
   void tell(Work& work);
+  Matrix6d withSharedNoise(const Matrix6d& covariance) const;
   void remember();
   void predict(std::int64_t time_ns, std::string_view reason, FrameResult& result) const;
   void lose(const char* reason, Work& work);
@@ -115,6 +127,7 @@ class Tracker {
   FrameLocation location_;
   KeyframeMaking keyframes_;
   MotionModel motion_;
+  MeasuredNoise noise_;
   std::vector<std::byte> scratch_memory_;
   std::pmr::monotonic_buffer_resource scratch_;  // what one frame needs on the way
 
@@ -123,9 +136,13 @@ class Tracker {
   FollowedFrame last_;   // the last frame that was located
   FollowedFrame kept_;   // a lost frame that others look for
   bool frame_is_lost_ = false;
-  std::int64_t lost_since_ns_ = -1;             // -1: not lost
+  bool is_lost_ = false;                        // the last frame was, and not merely blurred
+  std::int64_t lost_since_ns_ = -1;             // or blurred since; -1: neither
   Matrix6d map_covariance_ = Matrix6d::Zero();  // where the last pose was measured
   std::size_t tracks_at_start_ = 0;             // of the first frame of a map that does not stand yet
+  int faded_frames_ = 0;                        // in a row, in which too few of these are left
+  int worlds_ = 0;                              // that were tracked in
+  int last_world_ = 0;                          // that the last pose was in
 };
 
 }  // namespace edgeslam

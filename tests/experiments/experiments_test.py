@@ -233,7 +233,7 @@ class PoseUncertainty(WithFolder):
         """A run whose errors are `times_stated` times what it states; of the first `outlying` poses 100 times."""
         noise = random.Random(1)
         scale, turn, shift = 2.5, (math.sin(0.4), 0.0, 0.0, math.cos(0.4)), (3.0, -1.0, 2.0)
-        columns = [*("live_" + name for name in ("x", "y", "z", "qx", "qy", "qz", "qw")),
+        columns = [*("live_" + name for name in ("world", "x", "y", "z", "qx", "qy", "qz", "qw")),
                    *("sigma_" + name for name in ("x", "y", "z", "rx_rad", "ry_rad", "rz_rad"))]
         truth, rows = [], [",".join(["time_s", "state", *columns])]
         for i in range(600):
@@ -247,12 +247,13 @@ class PoseUncertainty(WithFolder):
             measured = product(rotation, (*small, 1.0))
             pose = [place[k] + off[k] for k in range(3)] + list(measured)
             sigmas = [self.SIGMA_M] * 3 + [self.SIGMA_RAD] * 3
-            rows.append(",".join(map(str, [seconds, "tracking", *pose, *sigmas])))
+            rows.append(",".join(map(str, [seconds, "tracking", 0, *pose, *sigmas])))
             at = turned(turn, place)
             true_place = [scale * at[k] + shift[k] for k in range(3)]
             truth.append(" ".join(map(str, [seconds + 0.001, *true_place, *product(turn, rotation)])))
-        rows.insert(1, "0,initialising" + "," * 13)
-        rows.insert(2, "0.05,predicted," + ",".join(["9"] * 13))
+        rows.insert(1, "0,initialising" + "," * 14)
+        rows.insert(2, "0.05,predicted,0," + ",".join(["9"] * 13))
+        rows.extend(f"{60 + i},tracking,1," + ",".join(["9"] * 13) for i in range(5))  # in another world
         self.write(name + "/frames.csv", "\n".join(rows) + "\n")
         self.write(name + "_truth/groundtruth.txt", "# time pose\n" + "\n".join(truth) + "\n")
         return self.path(name), self.path(name + "_truth")

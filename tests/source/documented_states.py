@@ -17,7 +17,7 @@ SOURCES = {
     "src/tracking/tracker.cpp": ["first", "recovery"],  # of keyframes
     "src/pipeline/tracking_worker.cpp": [],
     "src/pipeline/mapping_worker.cpp": [  # events
-        "recovered from three keyframes, ", " points", "relocalised at keyframe "],
+        "map ", " begins beside those before: ", "recovered from three keyframes, ", " points", "relocalised at keyframe "],
     "src/mapping/initialisation.cpp": [" from frame ", " to frame ", ", "],  # what the start was
     "src/mapping/initialisation.h": [],
     "src/mapping/initial_judgement.cpp": ["quality ", " edge pieces, parallax ", " deg, ", " points"],  # likewise
@@ -34,7 +34,8 @@ SOURCES = {
     "src/scale/scale_search.cpp": ["odometry", "camera_height"],  # values of scale.source
     "src/service/metric_scale.cpp": [  # lines of the log
         "the scale is %.6g metres a map unit, standard deviation %.2g %%",
-        "the scale is unknown again: another map was begun", "the scale is not known yet: ",
+        "the scale is unknown again: another map was begun", "the scale is unknown in this map",
+        ", in a map that the camera is not in now", "the scale is not known yet: ",
         "the scale is not renewed: "],
     "src/frames/image_file.cpp": [],
     "drivers/lcm/messages.cpp": [],

@@ -17,10 +17,15 @@ struct ReplayedRun {
   std::string folder;
   nlohmann::json summary;
   std::vector<std::string> states;  // of each frame
+  std::vector<int> worlds;          // of each frame's pose as it was given out; -1: none
 
   // Frames `first` to `last` that are in this state.
   int count(const std::string& state, int first, int last) const {
     return static_cast<int>(std::count(states.begin() + first, states.begin() + last + 1, state));
+  }
+  // Those among them whose pose was measured.
+  int countGood(int first, int last) const {
+    return count("tracking", first, last) + count("recovered", first, last) + count("relocalised", first, last);
   }
   // The first frame from `first` on whose pose was measured, or -1.
   int firstGood(int first) const {
@@ -31,6 +36,21 @@ struct ReplayedRun {
     return -1;
   }
 };
+
+// Of a line of a table; a quoted cell may hold commas.
+inline std::vector<std::string> cellsOf(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (c == ',' && !quoted) {
+      cells.emplace_back();
+    } else if (c != '"') {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
 
 inline ReplayedRun replayed(const std::string& sequence, const std::string& result,
                             const std::vector<std::string>& more = {}) {
@@ -45,9 +65,13 @@ inline ReplayedRun replayed(const std::string& sequence, const std::string& resu
   std::istringstream table(fileContent(result + "/frames.csv"));
   std::string line;
   std::getline(table, line);
+  const std::vector<std::string> names = cellsOf(line);
+  const auto world = std::find(names.begin(), names.end(), "live_world") - names.begin();
   while (std::getline(table, line)) {  // index,time,state,...
-    const std::size_t begin = line.find(',', line.find(',') + 1) + 1;
-    run.states.push_back(line.substr(begin, line.find(',', begin) - begin));
+    const std::vector<std::string> cells = cellsOf(line);
+    run.states.push_back(cells.at(2));
+    const std::string& told = cells.at(static_cast<std::size_t>(world));
+    run.worlds.push_back(told.empty() ? -1 : std::stoi(told));
   }
   return run;
 }

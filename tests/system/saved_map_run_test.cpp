@@ -114,7 +114,9 @@ TEST_F(SavedMapRun, ASmallMapGrowsInItsOwnFile) {
 // Nothing is taken for a place of the map that is none, and the map stays as it was.
 TEST_F(SavedMapRun, AnotherPlaceIsNotFoundInIt) {
   run(hall, 0, 149, {"--map-out", map()});
-  const ReplayedRun other = run(parlour, 0, 149, {"--map-in", map(), "--map-out", map("after.map")});
+  folder_.write("one.yaml", "tracking: {new_map: false}\n");  // or a map of the other place is begun beside it
+  const ReplayedRun other =
+      run(parlour, 0, 149, {"--map-in", map(), "--map-out", map("after.map"), "--config", folder_.path("one.yaml")});
   EXPECT_EQ(other.outcome.exit_code, 1);
   EXPECT_EQ(other.count("lost", 0, 149), 150);
   EXPECT_NE(other.outcome.output.find("no pose"), std::string::npos) << other.outcome.output;

@@ -1,6 +1,7 @@
 // A controller that holds the place where the robot stood at the first pose: the least that a user of SLAM_POSE writes.
 // Prints a velocity command in the body's frame for each pose, and `stop` where the pose is lost or nothing is heard.
-// Needs LCM and the generated types only; the URL is LCM_DEFAULT_URL. Build:
+// In another map (state_t.world) the place has no coordinates: it stops until the robot is back in the map of the
+// place. Needs LCM and the generated types only; the URL is LCM_DEFAULT_URL. Build:
 //   lcm-gen --cpp --cpp-std=c++11 types/*.lcm && g++ -std=c++17 hold_position.cpp -I. -llcm -o hold_position
 #include <algorithm>
 #include <array>
@@ -34,8 +35,12 @@ Vector toBody(const double (&q)[4], const Vector& v) {
 class Controller {
  public:
   void onPose(const lcm::ReceiveBuffer*, const std::string&, const edgeslam::pose_t* pose) {
-    if (!has_target_) std::copy_n(pose->pos, 3, target_.begin());
+    if (!has_target_) {
+      std::copy_n(pose->pos, 3, target_.begin());
+      target_world_ = world_;
+    }
     has_target_ = true;
+    if (world_ != target_world_) return stop("another map");
     Vector command;
     for (std::size_t i = 0; i < 3; ++i) command[i] = gain_per_s * (target_[i] - pose->pos[i]);
     command = toBody(pose->orientation, command);
@@ -46,6 +51,7 @@ class Controller {
   }
 
   void onState(const lcm::ReceiveBuffer*, const std::string&, const edgeslam::state_t* state) {
+    if (state->has_pose) world_ = state->world;  // comes before the pose
     if (!state->has_pose || state->state == edgeslam::state_t::PREDICTED) stop("no measured pose: " + state->reason);
   }
 
@@ -60,6 +66,7 @@ class Controller {
   }
 
   bool has_target_ = false, moving_ = true;
+  int world_ = 0, target_world_ = 0;
   Vector target_{};
   Clock::time_point heard_ = Clock::now();
 };

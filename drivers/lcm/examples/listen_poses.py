@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Prints SLAM_POSE. Needs the types that `lcm-gen --python` writes, on PYTHONPATH, and nothing else."""
+"""Prints SLAM_POSE, and where it is of another map than before. Needs the types that `lcm-gen --python` writes, on PYTHONPATH, and nothing else."""
 import socket
 import struct
-from edgeslam import pose_t
+from edgeslam import pose_t, state_t
 
 GROUP, PORT = "239.255.76.67", 7667
 receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -10,6 +10,7 @@ receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
 receiver.bind((GROUP, PORT))
 receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, struct.pack("4sL", socket.inet_aton(GROUP), socket.INADDR_ANY))
 print("ready", flush=True)
+world = 0
 while True:
     packet = receiver.recv(65536)
     if packet[:4] != b"LC02":  # a short message: magic, number, channel, a zero byte, the type's bytes
@@ -18,3 +19,8 @@ while True:
     if channel == b"SLAM_POSE":
         pose = pose_t.decode(content)
         print(f"{pose.utime / 1e6:.6f} s, position {pose.pos}, quaternion {pose.orientation}", flush=True)
+    if channel == b"SLAM_STATE":
+        state = state_t.decode(content)
+        if state.has_pose and state.world != world:
+            print(f"map {state.world}: its coordinates and unit are its own", flush=True)
+            world = state.world

@@ -22,7 +22,7 @@ bool Viewer::isWatched() const { return false; }
 FrameLooks& Viewer::looks() { return work_->looks; }
 void Viewer::frame(const FrameResult& /*result*/) {}
 void Viewer::status(const PublisherStatus& /*status*/, const ScaleState& /*scale*/, const std::string& /*problem*/) {}
-void Viewer::map(std::shared_ptr<const Map> /*map*/) {}
+void Viewer::map(std::shared_ptr<const Map> /*map*/, int /*world*/) {}
 void Viewer::note(const std::string& /*text*/) {}
 std::optional<Command> Viewer::nextCommand() { return std::nullopt; }
 void Viewer::answer(const Command& /*command*/, bool /*accepted*/, const std::string& /*message*/) {}

@@ -36,7 +36,7 @@ function readMap(description, rest, before) {
   const positions = putTogether(runs, count, 3, known.positions, take(Float32Array, 3 * added));
   const keyframes = putTogether(keyframeRuns, description.keyframes, 7, known.keyframes, take(Float32Array, 7 * description.new_keyframes));
   const [greys, sigmas, joins] = ['greys', 'sigmas', 'joins'].map((name) => putTogether(runs, count, 1, known[name], take(Uint8Array, added)));
-  return { number: description.number, count, positions, greys, sigmas, joins, keyframes };
+  return { number: description.number, count, positions, greys, sigmas, joins, keyframes, world: description.world };
 }
 
 function quantile(values, share) {
@@ -110,7 +110,9 @@ class MapView {
 
   show(description, rest) {
     if (!this.renderer) return;
-    this.map = readMap(description, rest, this.map);
+    const before = this.map;
+    this.map = readMap(description, rest, before);
+    if (before && before.world !== this.map.world) this.touched = false; // another map has other coordinates
     this.host.querySelector('.empty').hidden = this.map.count > 0;
     if (this.map.count === 0) this.touched = false;
     this.measure();
@@ -183,13 +185,14 @@ class MapView {
     setPositions(this.frusta.geometry, frusta);
   }
 
-  // `pose` may be null. `time` [s].
-  moveCamera(pose, time, state) {
+  // `measured` may be null. `time` [s]. `world`: that the pose is in; one that the map shown is not of is not drawn.
+  moveCamera(measured, time, state, world) {
     if (!this.renderer || !this.corners) return;
+    const pose = measured && (!this.map || this.map.count === 0 || this.map.world === world) ? measured : null;
     const last = this.tail[this.tail.length - 1];
     if (state === 'initialising' || (last && time < last.time)) this.tail = [];
-    this.tail = this.tail.filter((entry) => entry.time > time - TAIL_SECONDS);
-    if (pose && isMeasured(state)) this.tail.push({ time, position: pose.position });
+    this.tail = this.tail.filter((entry) => entry.time > time - TAIL_SECONDS && (!measured || entry.world === world));
+    if (pose && isMeasured(state)) this.tail.push({ time, world, position: pose.position });
     setPositions(this.recent.geometry, this.tail.flatMap((entry) => entry.position));
     setPositions(this.now.geometry, pose ? this.frustum(pose, 0.1 * (this.radius || 1)) : []);
     this.pose = pose;

@@ -39,7 +39,7 @@ function duration(ms) {
 function showFigures(state) {
   const status = state.status;
   const figures = {
-    'Keyframes': number(status.keyframes), 'Map points': number(status.points),
+    'Keyframes': number(status.keyframes), 'Map points': number(status.points), 'Maps not joined': number(status.worlds),
     'Map unit': scaleText(state.scale), 'Found again': number(status.recoveries + status.relocalisations), 'Loops closed': number(status.loops),
     'Frames dropped': number(status.dropped), 'Running for': duration(status.uptime_ms),
   };
@@ -89,7 +89,7 @@ function showState(state) {
     element('state').dataset.state = name;
     setText(element('state-name'), state.status.camera_problem ? 'No camera' : STATE_TEXT[name] || name);
     setText(element('reason'), (frame.reason && frame.reason[0].toUpperCase() + frame.reason.slice(1) + '.') || STATE_REASON[name] || '');
-    map.moveCamera(frame.pose, frame.utime / 1e6, frame.state);
+    map.moveCamera(frame.pose, frame.utime / 1e6, frame.state, frame.world);
   } else if (state.status.camera_problem) {
     element('state').dataset.state = 'lost';
     setText(element('state-name'), 'No camera');
@@ -121,7 +121,7 @@ function tellPicture(description) {
 function showMap(description, rest) {
   map.show(description, rest);
   const thinned = description.points < description.points_in_map ? `, ${number(description.points)} of them are sent` : '';
-  setText(element('map-caption'), `${number(description.points_in_map)} points${thinned}, ${number(description.keyframes_in_map)} keyframes. Drag to turn, wheel or pinch to come nearer.`);
+  setText(element('map-caption'), `${number(description.points_in_map)} points${thinned}, ${number(description.keyframes_in_map)} keyframes${latest && latest.status.worlds > 1 ? ` of map ${description.world}, where the camera is` : ''}. Drag to turn, wheel or pinch to come nearer.`);
 }
 
 function showConnection(kind, text) {

@@ -52,12 +52,12 @@ function rows(columns, cells) {
 }
 
 function drawAccuracy() {
-  drawTable(byId('accuracy'), ['sequence', ['error', 'cm'], ['live', 'cm'], ['keyframes', 'cm'], 'coverage', ['first pose', 's'], 'recoveries', 'relocalisations', 'loops',
+  drawTable(byId('accuracy'), ['sequence', ['error', 'cm'], ['live', 'cm'], ['keyframes', 'cm'], 'coverage', ['posed', 'of all frames'], 'maps', ['posed', 'in any map'], ['first pose', 's'], 'recoveries', 'relocalisations', 'loops',
     ['error before', 'last loop, cm'], ['after it', 'cm'], 'keyframes', 'points'],
-  rows(12, (run, f) => {
+  rows(15, (run, f) => {
     const last = f.loops[f.loops.length - 1];
     const atLoop = (error) => error ? (100 * error.rmse_m).toFixed(2) : '-';
-    return [errorText(run, f.trajectory), errorText(run, f.live), errorText(run, f.keyframe_error), percent(f.coverage), seconds(f.first_pose_s), whole(f.recoveries),
+    return [errorText(run, f.trajectory), errorText(run, f.live), errorText(run, f.keyframe_error), percent(f.coverage), percent(f.posed), whole(f.worlds), percent(f.posed_in_any_world), seconds(f.first_pose_s), whole(f.recoveries),
       whole(f.relocalisations), whole(f.loops.length), last ? atLoop(last.before) : '-', last ? atLoop(last.after) : '-', whole(f.keyframes), whole(f.map_points)].map((text) => cell(run, text));
   }));
 }

@@ -48,6 +48,10 @@ function drawHeadline() {
   }));
   byId('input').textContent = summary.input;
   byId('initialisation').textContent = summary.initialisation ? 'Initialisation: ' + summary.initialisation : 'The map was never started.';
+  byId('worlds-in-words').hidden = !run.worlds_in_words;
+  byId('worlds-in-words').textContent = run.worlds_in_words + '. Drawings and figures are of the main one.';
+  byId('quality').hidden = !summary.recording_quality;
+  byId('quality').textContent = 'The recording: ' + summary.recording_quality + '.';
 }
 
 function drawTrajectories() {
@@ -194,6 +198,10 @@ function drawFigures() {
   }
   drawTable(byId('state-table'), 'Frames in each state', ['state', 'frames', 'share'],
     Object.entries(summary.states).map(([name, count]) => [name, whole(count), summary.frames.total ? percent(count / summary.frames.total) : '-']));
+  if (summary.worlds.length > 1) {
+    drawTable(byId('world-table'), 'Maps that were not joined, the main one first', ['trajectory', 'frames with a pose', 'first pose after', 'keyframes', 'points'],
+      summary.worlds.map((world, i) => [`trajectory${i ? '_map' + i : ''}.txt`, whole(world.frames_with_pose), inSeconds(world.first_pose_s), whole(world.keyframes), whole(world.map_points)]));
+  }
   byId('configuration').textContent = summary.configuration;
   drawTable(byId('versions'), '', null, [['edgeslam', summary.versions.edgeslam], ...Object.entries(summary.versions.libraries), ['Command', summary.command_line]]);
   for (const row of byId('versions').rows) row.cells[1].className = 'text';

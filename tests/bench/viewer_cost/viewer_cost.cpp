@@ -62,7 +62,7 @@ void measure(const std::string& folder) {
     if (isGoodPose(result.state)) (viewer.isWatched() ? watched : alone).push_back(result.times.total());
   };
   observer.report = [&](const MappingReport& report) {
-    if (report.map) viewer.map(report.map);
+    if (report.map) viewer.map(report.map, 0);
   };
   observer.tick = [&] {
     if (viewer.isWatched() && ++ticks % 20 == 0) running->askForMap();

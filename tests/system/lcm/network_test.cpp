@@ -238,6 +238,12 @@ TEST_F(LcmNetwork, TheControllerHoldsItsPlaceAndStops) {
   EXPECT_TRUE(shows(2, {rotationExp({0, 0, M_PI / 2}), {0.1, 0, 0}}, " 0.08 ")) << controller.said();
   EXPECT_TRUE(shows(3, {Eigen::Quaterniond::Identity(), {-9, 0, 0}}, "velocity 0.3 ")) << "no faster than allowed";
 
+  FrameResult elsewhere = measuredFrame(3, Pose());
+  elsewhere.world = 1;
+  publisher.frame(elsewhere);
+  EXPECT_TRUE(controller.says("stop: another map")) << controller.said();
+  ASSERT_TRUE(shows(3, {Eigen::Quaterniond::Identity(), {0.05, 0, 0}}, "velocity -0.04 ")) << "back in the map";
+
   publisher.frame(frameWithoutPose(4, TrackingState::lost, "dark"));
   EXPECT_TRUE(controller.says("stop: no measured pose: dark")) << controller.said();
   ASSERT_TRUE(shows(5, {Eigen::Quaterniond::Identity(), {0.2, 0, 0}}, "velocity -0.16 "));

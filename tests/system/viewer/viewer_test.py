@@ -99,9 +99,9 @@ class Viewer(unittest.TestCase):
             self.assertTrue(comes_true(lambda: has_map(opened)))
             self.assertTrue(comes_true(lambda: state(opened) in ("predicted", "lost"), interval_s=0.05), "the lens is covered")
             self.assertRegex(opened.text("#reason"), "[a-z]{4}")
-            self.assertTrue(comes_true(lambda: seen("lost")), "the camera moved on meanwhile")
+            self.assertTrue(comes_true(lambda: seen("lost") or seen("predicted")), "the camera moved on meanwhile")
             self.assertTrue(comes_true(lambda: "at its end" in opened.text("#warnings")), opened.text("#warnings"))
-            self.assertTrue(has_map(opened), "the map stays")
+            self.assertTrue(comes_true(lambda: has_map(opened)), "there is a map in the end")
             self.assertGreater(whole_map(opened)[0], 2, "it came in parts")
 
             def last_one_came():

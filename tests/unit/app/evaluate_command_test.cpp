@@ -65,6 +65,24 @@ TEST(EvaluateCommand, WritesTheSameFiguresAsJson) {
   EXPECT_GT(json["relative_error"]["translation_m"]["rmse"].get<double>(), 0.1);
 }
 
+TEST(EvaluateCommand, TellsOfMapsThatWereNotJoined) {
+  const Files files;
+  const Trajectory all = readTrajectory(files.estimate);
+  files.folder.write("estimate.txt", formatTrajectory({all.begin(), all.begin() + 20}));
+  files.folder.write("estimate_map1.txt", formatTrajectory({all.begin() + 24, all.begin() + 34}));
+  files.folder.write("estimate_map2.txt", formatTrajectory({}));
+  files.folder.write("estimate_map4.txt", "no trajectory: those of a run have no gap in their numbers");
+  const std::string path = files.folder.path("figures.json");
+  testing::internal::CaptureStdout();
+  run({files.estimate, files.reference, "--json", path});
+  const std::string printed = testing::internal::GetCapturedStdout();
+  EXPECT_NE(printed.find("beside it 2 of maps that were not joined: 75.0 %"), std::string::npos) << printed;
+  const nlohmann::json covered = nlohmann::json::parse(fileContent(path))["coverage"];
+  EXPECT_EQ(covered["maps"], 3);
+  EXPECT_EQ(covered["pose_share"], 0.5);
+  EXPECT_EQ(covered["pose_share_in_any_map"], 0.75);
+}
+
 TEST(EvaluateCommand, WrongUseIsRefused) {
   const Files files;
   EXPECT_THROW(run({files.estimate}), CLI::ParseError);

@@ -46,7 +46,7 @@ TEST(ListenText, AStateIsTold) {
   EXPECT_NE(lost.find("lost: dark"), std::string::npos) << lost;
   EXPECT_EQ(lost.find(" at "), std::string::npos) << lost;
   const std::string tracked = describe(encoded(stateOf(measuredFrame(3, {{1, 0, 0, 0}, {1, 2, 3}}), 9)));
-  EXPECT_NE(tracked.find("tracking, at 1.000 2.000 3.000"), std::string::npos) << tracked;
+  EXPECT_NE(tracked.find("tracking, world 0, at 1.000 2.000 3.000"), std::string::npos) << tracked;
   EXPECT_NE(tracked.find("scale unknown"), std::string::npos) << tracked;
 }
 

@@ -33,7 +33,25 @@ TEST(FrameTable, givesBackWhatTheRunWrote) {
     }
     EXPECT_NEAR(rows[i].time_ms, frame.times.total() - frame.times[Stage::mapping], 2e-3);
   }
-  EXPECT_EQ(finalTrajectory(rows).size(), finalTrajectory(run).size());
+  EXPECT_EQ(finalTrajectory(rows).size(), finalTrajectory(run, 0).size());
+}
+
+TEST(FrameTable, posesAreThoseOfTheMainWorld) {
+  const TemporaryFolder folder;
+  RunResult run = makeRun();
+  for (std::size_t i = 30; i < 110; ++i) run.frames[i].final_world = run.frames[i].has_final_pose ? 2 : -1;
+  const std::vector<FrameRow> rows = read(folder, tableOf(run));
+  EXPECT_FALSE(rows[20].final_pose);
+  EXPECT_TRUE(rows[30].final_pose);
+  EXPECT_FALSE(rows[made_lost_frame].final_pose);
+  EXPECT_EQ(finalTrajectory(rows).size(), 79U);
+}
+
+TEST(FrameTable, aTableWithoutWorldsHasOne) {
+  const TemporaryFolder folder;
+  std::string table = tableOf(makeRun());
+  table.replace(table.find("final_world"), 11, "final_other");
+  EXPECT_EQ(finalTrajectory(read(folder, table)).size(), finalTrajectory(makeRun(), 0).size());
 }
 
 TEST(FrameTable, whatIsCutOffIsRefused) {
@@ -53,14 +71,17 @@ TEST(FrameTable, whatIsNotANumberIsToldWithItsLine) {
   const std::string heading = table.substr(0, table.find('\n') + 1);
   const std::size_t columns = 1 + countOf(heading, ",");
   const auto row = [&](const std::string& index, const std::string& time, const std::string& x) {
-    // index,time_s,state,reason, seven live, seven final
-    std::string line = index + "," + time + ",tracking,,,,,,,,," + x + ",0,0,0,0,0,1";
+    // index,time_s,state,reason, world and seven live, world and seven final
+    std::string line = index + "," + time + ",tracking,,,,,,,,,,," + x + ",0,0,0,0,0,1";
     return line + std::string(columns - 1 - countOf(line, ","), ',') + "\n";
   };
   EXPECT_EQ(read(folder, heading + row("0", "1.5", "2") + row("1", "1.6", "2")).size(), 2U);
   for (const char* x : {"nan", "inf", "1e999", "1e30", "2x", "0x10"}) {
     expectInputError([&] { read(folder, heading + row("0", "1.5", x)); }, "frames.csv:2: final pose", x);
   }
+  std::string other = row("0", "1.5", "2");
+  other.replace(other.find(",2,0"), 1, "-1,");
+  expectInputError([&] { read(folder, heading + other); }, "frames.csv:2: final_world", "0 or more");
   for (const char* time : {"nan", "", "-", "1e99"}) {
     expectInputError([&] { read(folder, heading + row("0", time, "2")); }, "frames.csv:2: time_s");
   }

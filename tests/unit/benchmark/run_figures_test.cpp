@@ -44,6 +44,27 @@ TEST(RunFigures, areThoseOfTheRun) {
   EXPECT_EQ(stageOf(figures, "no stage"), nullptr);
 }
 
+TEST(RunFigures, areOfTheMainWorldAndCountTheOthers) {
+  const TemporaryFolder folder;
+  RunResult run = makeRun();
+  for (std::size_t i = 100; i < 120; ++i) run.frames[i].final_world = 1;
+  const RunFigures figures = readRunFigures(writeMadeRun(folder, "run", run));
+  EXPECT_EQ(figures.worlds, 2);
+  EXPECT_EQ(figures.with_pose, 89);
+  EXPECT_DOUBLE_EQ(posedShare(figures), 89.0 / made_frames);
+  EXPECT_DOUBLE_EQ(posedShareInAnyWorld(figures), 109.0 / made_frames);
+  EXPECT_EQ(figures.trajectory->pairs, 89);
+}
+
+TEST(RunFigures, aSummaryWithoutWorldsHasOne) {
+  const TemporaryFolder folder;
+  const std::string run = writeMadeRun(folder, "run", makeRun());
+  changeSummary(run, [](json& summary) { summary.erase("worlds"); });
+  const RunFigures figures = readRunFigures(run);
+  EXPECT_EQ(figures.worlds, 1);
+  EXPECT_EQ(figures.with_pose_in_any_world, figures.with_pose);
+}
+
 TEST(RunFigures, theAlignmentTakesTheRunToTheGroundTruth) {
   const TemporaryFolder folder;
   const RunResult run = makeRun();
@@ -96,6 +117,8 @@ TEST(RunFigures, impossibleValuesAreToldWithTheirKey) {
   refused("/frames/total", 1e300, "frames.total");
   refused("/frames/total", 18446744073709551615U, "frames.total");
   refused("/frames/total", "120", "frames.total");
+  refused("/worlds", json({1}), "worlds[0]");
+  refused("/worlds/0/frames_with_pose", made_frames + 1, "frames_with_pose");
   refused("/states/tracking", 1000000, "states.tracking");
   refused("/coverage_from_first_pose", 1.5, "coverage_from_first_pose");
   refused("/first_pose_s", -1, "first_pose_s");

@@ -51,6 +51,9 @@ TEST(SetPage, hasTheFiguresOfEachRunsSummary) {
   EXPECT_EQ(figures["live"]["rmse_m"], summary["absolute_trajectory_error"]["live"]["rmse_m"]);
   EXPECT_EQ(figures["keyframe_error"]["rmse_m"], summary["absolute_trajectory_error"]["keyframes"]["rmse_m"]);
   EXPECT_EQ(figures["coverage"], summary["coverage_from_first_pose"]);
+  EXPECT_EQ(figures["worlds"], 1);
+  EXPECT_EQ(figures["posed"], summary["frames"]["with_pose"].get<double>() / made_frames);
+  EXPECT_EQ(figures["posed_in_any_world"], figures["posed"]);
   EXPECT_EQ(figures["tracking_ms"]["p99"], summary["stage_times_ms"]["tracking"]["p99"]);
   EXPECT_EQ(figures["states"], summary["states"]);
   EXPECT_EQ(figures["real_time_ratio"], summary["real_time_ratio"]);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "unit/edges/synthetic_image.h"
@@ -38,70 +39,88 @@ TEST(Sharpness, IsZeroWithoutEdges) {
   EXPECT_EQ(sharpnessOf(cv::Mat(50, 50, CV_8U, cv::Scalar(10))), 0);
 }
 
+// A gate that sees frames at 100 frames/s.
+class Gate {
+ public:
+  explicit Gate(const BlurGateOptions& options = {}) : options_(options) {}
+
+  bool isBlurred(double frame_sharpness) {
+    time_ns_ += 10'000'000;
+    return edgeslam::isBlurred(gate_, {time_ns_, frame_sharpness}, options_);
+  }
+  double average() const { return gate_.average; }
+
+ private:
+  BlurGateOptions options_;
+  BlurGate gate_;
+  std::int64_t time_ns_ = 1'000'000'000;
+};
+
 TEST(BlurGate, FirstFrameAndSteadyOnesPass) {
-  BlurGate gate;
-  for (int frame = 0; frame < 100; ++frame) EXPECT_FALSE(isBlurred(gate, 1 + 0.2 * (frame % 3), {}));
+  Gate gate;
+  for (int frame = 0; frame < 100; ++frame) EXPECT_FALSE(gate.isBlurred(1 + 0.2 * (frame % 3)));
 }
 
 TEST(BlurGate, SuddenFallIsRejectedAndTheNextSharpFramePasses) {
-  BlurGate gate;
-  for (int frame = 0; frame < 50; ++frame) isBlurred(gate, 1, {});
-  EXPECT_TRUE(isBlurred(gate, 0.3, {}));
-  EXPECT_TRUE(isBlurred(gate, 0.3, {}));
-  EXPECT_FALSE(isBlurred(gate, 0.6, {}));
-  EXPECT_EQ(gate.rejected_in_a_row, 0);
+  Gate gate;
+  for (int frame = 0; frame < 50; ++frame) gate.isBlurred(1);
+  EXPECT_TRUE(gate.isBlurred(0.3));
+  EXPECT_TRUE(gate.isBlurred(0.3));
+  EXPECT_FALSE(gate.isBlurred(0.6));
+  EXPECT_TRUE(gate.isBlurred(0.3));
 }
 
 TEST(BlurGate, OneSharperFrameHardlyRaisesTheBar) {
-  BlurGate gate;
-  for (int frame = 0; frame < 50; ++frame) isBlurred(gate, 1, {});
-  EXPECT_FALSE(isBlurred(gate, 2, {}));
-  EXPECT_FALSE(isBlurred(gate, 0.6, {}));
+  Gate gate;
+  for (int frame = 0; frame < 50; ++frame) gate.isBlurred(1);
+  EXPECT_FALSE(gate.isBlurred(2));
+  EXPECT_FALSE(gate.isBlurred(0.6));
 }
 
 TEST(BlurGate, FollowsAViewThatGrowsBare) {
-  BlurGate gate;
+  Gate gate;
   double value = 1;
   for (int frame = 0; frame < 90; ++frame) {
-    EXPECT_FALSE(isBlurred(gate, value, {})) << frame;
+    EXPECT_FALSE(gate.isBlurred(value)) << frame;
     value *= 0.95;
   }
   EXPECT_LT(value, 0.01);
 }
 
 TEST(BlurGate, RejectedFramesDoNotLowerTheBar) {
-  BlurGate gate;
-  isBlurred(gate, 1, {});
-  const double average = gate.average;
-  isBlurred(gate, 0.1, {});
-  EXPECT_EQ(gate.average, average);
+  Gate gate;
+  gate.isBlurred(1);
+  const double average = gate.average();
+  gate.isBlurred(0.1);
+  EXPECT_EQ(gate.average(), average);
 }
 
+// However few or many frames that is.
 TEST(BlurGate, AcceptsTheNewSceneAfterTheLongestRejection) {
   BlurGateOptions options;
-  options.longest_rejection = 5;
-  BlurGate gate;
-  isBlurred(gate, 1, options);
-  for (int frame = 0; frame < 5; ++frame) EXPECT_TRUE(isBlurred(gate, 0.1, options));
-  EXPECT_FALSE(isBlurred(gate, 0.1, options));
-  EXPECT_FALSE(isBlurred(gate, 0.09, options));
+  options.longest_rejection_s = 0.05;
+  Gate gate(options);
+  gate.isBlurred(1);
+  for (int frame = 0; frame < 5; ++frame) EXPECT_TRUE(gate.isBlurred(0.1));
+  EXPECT_FALSE(gate.isBlurred(0.1));
+  EXPECT_FALSE(gate.isBlurred(0.09));
 }
 
 TEST(BlurGate, ImageWithoutEdgesNeverPasses) {
-  BlurGate gate;
+  Gate gate;
   for (int frame = 0; frame < 40; ++frame) {
-    EXPECT_TRUE(isBlurred(gate, 0, {}));
-    EXPECT_TRUE(isBlurred(gate, std::nan(""), {}));
+    EXPECT_TRUE(gate.isBlurred(0));
+    EXPECT_TRUE(gate.isBlurred(std::nan("")));
   }
-  EXPECT_FALSE(isBlurred(gate, 0.01, {}));
+  EXPECT_FALSE(gate.isBlurred(0.01));
 }
 
 TEST(BlurGate, ShareOfZeroLetsAllEdgesPass) {
   BlurGateOptions options;
   options.share_of_average = 0;
-  BlurGate gate;
-  isBlurred(gate, 1, options);
-  EXPECT_FALSE(isBlurred(gate, 1e-9, options));
+  Gate gate(options);
+  gate.isBlurred(1);
+  EXPECT_FALSE(gate.isBlurred(1e-9));
 }
 
 }  // namespace

@@ -122,6 +122,24 @@ TEST(Messages, TwistIsOfTheBodyInItsOwnFrame) {
   }
 }
 
+TEST(Messages, TheWorldIsToldAndNoMotionLeadsFromOneToAnother) {
+  Random random(9);
+  FrameResult before = measuredFrame(0, randomPose(random)), now = measuredFrame(1, randomPose(random));
+  before.reference = now.reference = 3;  // joined since: the keyframe's unit was another before
+  EXPECT_EQ(messagesOf(now).state.world, 0) << "of a frame that does not tell it";
+  before.world = 2, now.world = 1;
+  const PublishedFrame messages = messagesOf(now, {}, before);
+  EXPECT_EQ(messages.state.world, 1);
+  EXPECT_FALSE(messages.state.has_twist);
+  EXPECT_EQ(messages.update.estimate_status, update_t::NO_DATA);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(messages.pose->vel[i], 0);
+  before.world = 1;
+  EXPECT_TRUE(messagesOf(now, {}, before).state.has_twist);
+  EXPECT_EQ(messagesOf(frameWithoutPose(2, TrackingState::lost, "dark")).state.world, -1);
+  now.world_T_camera.translation.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(messagesOf(now).state.world, -1);
+}
+
 TEST(Messages, AStateTellsBodyAndCameraWithPositiveW) {
   Random random(4);
   for (int i = 0; i < 20; ++i) {

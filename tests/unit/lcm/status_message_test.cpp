@@ -58,7 +58,7 @@ TEST(FrameStatistics, IsBoundedWhereNobodyAsks) {
 }
 
 TEST(StatusMessage, TellsWhatItIsGiven) {
-  const PublisherStatus status{1, "1.2.3", 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, true, "", "no ground"};
+  const PublisherStatus status{1, "1.2.3", 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 20, true, "", "no ground"};
   const FrameFigures figures{TrackingState::relocalised, "found", 30.5, 29.5, 15, 25};
   const status_t message = statusMessage(status, figures, {13, 14, 15, 16}, {17, 51.5}, 18, 19);
   EXPECT_EQ(message.utime, 19);
@@ -83,6 +83,7 @@ TEST(StatusMessage, TellsWhatItIsGiven) {
   EXPECT_EQ(message.publishing_queue, 10);
   EXPECT_EQ(message.keyframes, 11);
   EXPECT_EQ(message.points, 12);
+  EXPECT_EQ(message.worlds, 20);
   EXPECT_TRUE(message.recording);
   EXPECT_EQ(message.messages_sent, 13);
   EXPECT_EQ(message.messages_not_sent, 14);

@@ -34,6 +34,7 @@ TEST(Slam, GivesWhatTheProgramGivesToTheLastBit) {
     ASSERT_EQ(frame.time_ns, time_ns);
     ASSERT_EQ(frame.reason, expected.reason);
     ASSERT_EQ(frame.has_pose, expected.has_pose);
+    ASSERT_EQ(frame.world, expected.has_pose ? std::max(0, expected.world) : -1);
     ASSERT_EQ(frame.isGood(), isGoodPose(expected.state));
     if (!frame.has_pose) continue;
     ++measured;
@@ -52,6 +53,7 @@ TEST(Slam, GivesWhatTheProgramGivesToTheLastBit) {
     if (!frame.has_final_pose) continue;
     ASSERT_LT(with_final_pose, trajectory.size());
     EXPECT_EQ(trajectory[with_final_pose].time_ns, frame.time_ns);
+    EXPECT_EQ(trajectory[with_final_pose].world, std::max(0, frame.final_world));
     EXPECT_EQ(trajectory[with_final_pose++].pose.position[0], frame.final_world_T_camera.translation.x());
   }
   EXPECT_EQ(with_final_pose, trajectory.size());

@@ -376,5 +376,37 @@ TEST(MapChange, WithoutPointsTheScaleIsOne) {
       1e-9);
 }
 
+// The copy's keyframes 3 and 4 are of world 1, which turns out to be part of world 0; keyframe 5 came since, and 6 is
+// of a world that was begun since.
+TEST(MapChange, WorldsThatWereJoinedTakeAlongWhatCameSince) {
+  Map copy = madeMapOf(5);
+  const WorldJoin join{1, 0, {2, Eigen::Quaterniond(rotationExp({0, 0.4, 0})), {1, 2, 3}}};
+  for (auto point = copy.points.begin(); point != copy.points.end();) {
+    std::vector<KeyframeId>& seen_in = point->second.seen_in;
+    const bool is_old = point->second.host < 3;
+    seen_in.erase(std::remove_if(seen_in.begin(), seen_in.end(), [&](KeyframeId id) { return (id < 3) != is_old; }),
+                  seen_in.end());
+    point = seen_in.empty() ? copy.points.erase(point) : std::next(point);
+  }
+  for (const KeyframeId id : {3, 4}) copy.keyframes[id].world = 1;
+  Map corrected = copy;
+  joinWorlds(join, corrected);
+  Map grown = copy;
+  for (const auto& [id, world] : {std::pair{5, 1}, std::pair{6, 2}}) {
+    Keyframe keyframe;
+    keyframe.id = id;
+    keyframe.world = world;
+    keyframe.world_T_camera = poseOf(id);
+    grown.keyframes.push_back(keyframe);
+  }
+  applyChange(changeOf(copy, corrected, join), grown);
+  for (const KeyframeId id : {0, 1, 2, 3, 4, 5}) EXPECT_EQ(grown.keyframes[id].world, 0) << id;
+  EXPECT_EQ(grown.keyframes[6].world, 2);
+  EXPECT_EQ(grown.keyframes[6].world_T_camera.translation, poseOf(6).translation);
+  EXPECT_EQ(grown.keyframes[1].world_T_camera.translation, copy.keyframes[1].world_T_camera.translation);
+  const Eigen::Vector3d should_be = join.to_S_from * poseOf(5).translation;
+  EXPECT_LT((grown.keyframes[5].world_T_camera.translation - should_be).norm(), 1e-9);
+}
+
 }  // namespace
 }  // namespace edgeslam::test

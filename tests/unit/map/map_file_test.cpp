@@ -104,7 +104,7 @@ TEST(MapFile, AnEmptyMapIsAHeaderACameraAndTwoEmptyLists) {
                               "\0\0\0\0\0\0\0\xC0"s;
   const std::string payload =
       "CAMR" + littleEndian(84, 8) + content + "KEYF" + littleEndian(8, 8) + zero + "PNTS" + littleEndian(8, 8) + zero;
-  const std::string header = "EDGESLAM MAP\r\n\x1a\n" + littleEndian(1, 4) + littleEndian(payload.size(), 8);
+  const std::string header = "EDGESLAM MAP\r\n\x1a\n" + littleEndian(2, 4) + littleEndian(payload.size(), 8);
   const std::string bytes = encodeMap(saved);
   EXPECT_EQ(bytes.substr(0, bytes.size() - checksum_size), header + payload);
   EXPECT_EQ(bytes, sealed(bytes));
@@ -121,6 +121,7 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
   observation.order = 10;
   Keyframe keyframe;
   keyframe.id = 11;
+  keyframe.world = 3;
   keyframe.frame_index = 12;
   keyframe.time_ns = -13;
   keyframe.world_T_camera = {Eigen::Quaterniond(14, 15, 16, 17), {18, 19, 20}};
@@ -134,7 +135,7 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
 
   const std::string observed = littleEndian(5, 8) + littleEndian({1, 2, 3, 4, 5, 6, 7, 8, 9}) + '\1' +
                                littleEndian(0xFFFFFFFF, 4) + littleEndian(10, 4);
-  const std::string keyframes = littleEndian(1, 8) + littleEndian(11, 4) + littleEndian(12, 8) +
+  const std::string keyframes = littleEndian(1, 8) + littleEndian(11, 4) + littleEndian(3, 4) + littleEndian(12, 8) +
                                 littleEndian(~12ULL, 8) + littleEndian({14, 15, 16, 17, 18, 19, 20}) +
                                 littleEndian(4, 8) + "turn" + littleEndian(1, 8) + observed + '\0';
   const std::string points = littleEndian(1, 8) + littleEndian(5, 8) + littleEndian(21, 4) +
@@ -177,9 +178,42 @@ TEST(MapFile, ANewerVersionIsTold) {
   std::string bytes = encodeMap(test::madeMap(32, 24));
   overwrite(bytes, 16, littleEndian(7, 4));
   EXPECT_EQ(refusal(sealed(bytes)),
-            "hall.map: map format version 7 is newer than 1, which this program reads: use a newer edgeslam");
+            "hall.map: map format version 7 is newer than 2, which this program reads: use a newer edgeslam");
   overwrite(bytes, 16, littleEndian(0, 4));
   EXPECT_EQ(refusal(sealed(bytes)), "hall.map: there is no map format version 0");
+}
+
+TEST(MapFile, KeepsTheWorlds) {
+  SavedMap saved;
+  saved.camera = test::madeMap(32, 24).camera;
+  for (const KeyframeId id : {0, 1, 2}) {
+    Keyframe keyframe;
+    keyframe.id = id;
+    keyframe.world = id / 2;
+    saved.map.keyframes.push_back(keyframe);
+  }
+  const SavedMap read = decodeMap(encodeMap(saved), "hall.map");
+  for (const KeyframeId id : {0, 1, 2}) EXPECT_EQ(read.map.keyframes[id].world, id / 2) << id;
+  saved.map.keyframes[2].world = -1;
+  EXPECT_EQ(refusal(encodeMap(saved)), "hall.map: keyframe 2: there is no such world");
+}
+
+// Which had no worlds.
+TEST(MapFile, ReadsTheFirstVersion) {
+  SavedMap saved;
+  saved.camera = test::madeMap(32, 24).camera;
+  saved.map.keyframes.push_back(Keyframe());
+  saved.map.keyframes.back().frame_index = 17;
+  std::string bytes = encodeMap(saved);
+  const std::size_t section = bytes.find("KEYF"), length = section + 4, record = length + 16, world = record + 4;
+  const auto content = static_cast<unsigned char>(bytes[length]) + 256U * static_cast<unsigned char>(bytes[length + 1]);
+  bytes.erase(world, 4);
+  overwrite(bytes, length, littleEndian(content - 4, 8));
+  overwrite(bytes, 16, littleEndian(1, 4));
+  const SavedMap read = decodeMap(sealed(bytes), "hall.map");
+  ASSERT_EQ(read.map.keyframes.size(), 1U);
+  EXPECT_EQ(read.map.keyframes.back().frame_index, 17);
+  EXPECT_EQ(read.map.keyframes.back().world, 0);
 }
 
 // Bytes put anywhere under a checksum that fits them: refused, or a map that keeps to every rule.
@@ -213,7 +247,7 @@ TEST(MapFile, WhateverStandsUnderAFittingChecksumIsRefusedOrAMap) {
 TEST(MapFile, LengthsAndCountsAreHeldAgainstTheBytes) {
   const std::string bytes = encodeMap(test::madeMap(32, 24));
   const std::size_t camera = payload_begin + 4, keyframes = bytes.find("KEYF") + 4, points = bytes.rfind("PNTS") + 4;
-  const std::size_t reason = keyframes + 16 + 76, image = bytes.find("\x89PNG") - 8;
+  const std::size_t reason = keyframes + 16 + 80, image = bytes.find("\x89PNG") - 8;
   for (const std::size_t place :
        {camera, keyframes, keyframes + 8, reason, reason + 8, image, points, points + 8, points + 16 + 65}) {
     const std::uint64_t right = numberAt(bytes, place);

@@ -51,7 +51,26 @@ TEST(InitialJudgement, TheTruthHasItsParallaxAndItsQuality) {
   EXPECT_EQ(evidence.points, evidence.followed);
   EXPECT_NEAR(evidence.parallax_deg, 5, 1.5);  // 0.3 seen from a distance of about 3
   EXPECT_GT(evidence.quality.share(), 0.6);
-  EXPECT_EQ(reasonToWait(evidence, InitialisationOptions()), "");
+  InitialisationOptions of_two_frames;
+  of_two_frames.attempt_interval = 1;
+  EXPECT_EQ(reasonToWait(evidence, of_two_frames), "");
+}
+
+TEST(InitialJudgement, AnEarlyStartNeedsMoreThatSpeaksForIt) {
+  InitialEvidence evidence;
+  evidence.parallax_deg = 5;
+  evidence.followed = evidence.points = 400;
+  evidence.quality.pieces = 100;
+  evidence.quality.kept = 70;
+  const InitialisationOptions options;
+  evidence.frames = options.attempt_interval;
+  EXPECT_EQ(reasonToWait(evidence, options), "");
+  evidence.frames = options.attempt_interval - 1;
+  EXPECT_EQ(reasonToWait(evidence, options), "quality too low (70 of 100 edge pieces hold)");
+  evidence.quality.kept = 80;
+  EXPECT_EQ(reasonToWait(evidence, options), "");
+  evidence.followed = evidence.points = 50;
+  EXPECT_EQ(reasonToWait(evidence, options), "too few points with a good depth (50)");
 }
 
 TEST(InitialJudgement, PointsOfUncertainDepthDoNotCount) {

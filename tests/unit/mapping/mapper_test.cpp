@@ -7,6 +7,7 @@
 #include <set>
 
 #include "map/map_check.h"
+#include "map/worlds.h"
 #include "unit/mapping/frames_of_a_scene.h"
 
 namespace edgeslam::test {
@@ -86,6 +87,101 @@ TEST(Mapper, AFrameThatWasOnItsWayWhenTheMapCameToStandIsNoKeyframe) {
   EXPECT_EQ(mapper.map().keyframes.back().id, latest);
   EXPECT_EQ(mapper.view().version, version);
   EXPECT_EQ(mapper.earlyPoses().size(), early_poses + 1) << "but it has a pose";
+}
+
+// Feeds frames of another place until a map of it stands; its first keyframe gets this number.
+void startElsewhere(Mapper& mapper, std::int64_t first_frame, KeyframeId first_keyframe) {
+  const EdgeScene scene = framesOnAWall(25);
+  for (int i = 0; i < 90 && (i == 0 || !mapper.initialised()); ++i) {
+    TrackedFrame frame = seen(scene, sideways(i), first_frame + i, i == 0 ? first_keyframe : -1);
+    frame.kind = i == 0 ? FrameKind::first : FrameKind::start;
+    for (PointObservation& observation : frame.observations) observation.point += 1'000'000;
+    frame.world_T_camera.translation /= 3;
+    mapper.add(frame);
+  }
+}
+
+TEST(Mapper, AStartAfterTheMapStandsBeginsAWorldBesideIt) {
+  Mapper mapper = started();
+  const Map first = mapper.map();
+  startElsewhere(mapper, 500, 40);
+  ASSERT_TRUE(mapper.initialised());
+  EXPECT_EQ(mapper.world(), 1);
+  EXPECT_EQ(worldsOf(mapper.map()), (std::vector<int>{0, 1}));
+  EXPECT_EQ(keyframesOf(mapper.map(), 0).size(), first.keyframes.size());
+  EXPECT_EQ(keyframesOf(mapper.map(), 1).front(), 40);
+  EXPECT_EQ(mapProblem(camera, mapper.map()), "");
+  const MapView view = mapper.view();
+  EXPECT_EQ(view.world, 1);
+  EXPECT_EQ(view.keyframes.front().id, 40) << "tracking sees its own world";
+  EXPECT_EQ(view.latest_keyframe, mapper.map().keyframes.back().id);
+  for (const ViewPoint& point : view.points) EXPECT_GE(point.host, 40);
+  std::set<int> worlds_of_early_poses;
+  for (const EarlyPose& early : mapper.earlyPoses()) worlds_of_early_poses.insert(early.world);
+  EXPECT_EQ(worlds_of_early_poses, (std::set<int>{0, 1}));
+}
+
+TEST(Mapper, FoundAgainInTheOldWorldItGoesOnThereAndForgetsTheStart) {
+  Mapper mapper = started();
+  const KeyframeId latest = mapper.map().keyframes.back().id;
+  TrackedFrame first = seen(framesOnAWall(25), Pose(), 500, 40);
+  first.kind = FrameKind::first;
+  mapper.add(first);
+  EXPECT_FALSE(mapper.initialised());
+  mapper.goBackTo(latest);
+  EXPECT_TRUE(mapper.initialised());
+  EXPECT_EQ(mapper.view().keyframes.back().id, latest);
+  // What of the start was on its way says nothing any more.
+  EXPECT_FALSE(mapper.add(seen(framesOnAWall(25), sideways(1), 501, -1)));
+  EXPECT_EQ(worldsOf(mapper.map()), std::vector<int>{0});
+  TrackedFrame next = seen(framesOnAWall(21), sideways(30), 510, 41);
+  next.world_T_camera.translation /= 3;
+  EXPECT_TRUE(mapper.add(next));
+  EXPECT_EQ(mapper.map().keyframes.back().id, 41);
+  EXPECT_EQ(mapper.map().keyframes.back().world, 0);
+}
+
+// Tracking was found in the old world before it heard of the new one, and gives its numbers to others.
+TEST(Mapper, AWorldThatStoodTooLateForTrackingIsForgotten) {
+  Mapper mapper = started();
+  startElsewhere(mapper, 500, 40);
+  ASSERT_EQ(mapper.world(), 1);
+  TrackedFrame next = seen(framesOnAWall(21), sideways(30), 600, 41);
+  next.world_T_camera.translation /= 3;
+  next.world = 0;
+  EXPECT_TRUE(mapper.add(next));
+  EXPECT_EQ(worldsOf(mapper.map()), std::vector<int>{0});
+  EXPECT_EQ(mapper.map().keyframes.back().id, 41);
+  EXPECT_EQ(mapper.startsGivenUp(), 1U);
+  startElsewhere(mapper, 700, 50);
+  EXPECT_EQ(mapper.world(), 1) << "its number was never given out";
+}
+
+TEST(Mapper, WhatIsTrackedInAWorldThatWasJoinedIsPutIntoTheOther) {
+  Mapper mapper = started();
+  startElsewhere(mapper, 500, 40);
+  ASSERT_EQ(mapper.world(), 1);
+  const Map before = mapper.map();
+  const WorldJoin join{1, 0, {2, Eigen::Quaterniond(rotationExp({0, 0.4, 0})), {1, 2, 3}}};
+  Map after = before;
+  joinWorlds(join, after);
+  std::vector<EarlyPose> early_before = mapper.earlyPoses();
+  mapper.apply(changeOf(before, after, join));
+  EXPECT_EQ(mapper.world(), 0);
+  EXPECT_EQ(worldsOf(mapper.map()), std::vector<int>{0});
+  const std::vector<EarlyPose> early_after = mapper.earlyPoses();
+  ASSERT_EQ(early_after.size(), early_before.size());
+  for (std::size_t i = 0; i < early_after.size(); ++i) {
+    const Pose& was = early_before[i].world_T_camera;
+    const Pose should_be = early_before[i].world == 0 ? was : moved(join.to_S_from, was);
+    EXPECT_LT(distance(early_after[i].world_T_camera, should_be), 1e-9) << i;
+  }
+  TrackedFrame next = seen(framesOnAWall(25), sideways(30), 600, 90);
+  for (PointObservation& observation : next.observations) observation.point += 1'000'000;
+  next.world_T_camera = before.keyframes.back().world_T_camera;
+  next.world = 1;
+  EXPECT_TRUE(mapper.add(next));
+  EXPECT_EQ(mapper.map().keyframes.back().world, 0);
 }
 
 TEST(Mapper, EveryKeyframeGivesANewerView) {

@@ -10,7 +10,7 @@ namespace {
 
 const Camera& camera = walking_camera;
 constexpr std::int64_t interval_ns = walking_interval_ns;
-constexpr std::int64_t long_after_ns = 3'000'000'000;  // the last frame's points are not looked for any more
+constexpr std::int64_t long_after_ns = 900'000'000;  // the last frame's points are not looked for any more
 
 Pose path(int i) { return walk(i); }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "mapping/global_adjustment.h"
@@ -202,6 +203,40 @@ TEST_F(LoopCorrectionTest, LoopsThatContradictEachOtherAreRefused) {
     refuseContradictions(*place, current, loops);
     EXPECT_TRUE(loops[0].accepted);
   }
+}
+
+// The last keyframes are of a world of their own, with another frame and unit.
+TEST_F(LoopCorrectionTest, JoinsTwoWorldsThatAreOne) {
+  Map map = *place;
+  constexpr KeyframeId first_of_young = turn - 3;
+  for (auto& [id, point] : map.points) {
+    const bool is_young = point.host >= first_of_young;
+    std::vector<KeyframeId>& seen_in = point.seen_in;
+    seen_in.erase(std::remove_if(seen_in.begin(), seen_in.end(),
+                                 [&](KeyframeId keyframe) { return (keyframe >= first_of_young) != is_young; }),
+                  seen_in.end());
+  }
+  for (auto point = map.points.begin(); point != map.points.end();) {
+    point = point->second.seen_in.empty() ? map.points.erase(point) : std::next(point);
+  }
+  const WorldJoin apart{5, 1, {0.4, Eigen::Quaterniond(rotationExp({0.3, 1.1, -0.5})), {3, -2, 7}}};
+  for (Keyframe& keyframe : map.keyframes) keyframe.world = keyframe.id >= first_of_young ? apart.from : 0;
+  joinWorlds(apart, map);
+
+  LoopVerificationOptions of_any_scale;
+  of_any_scale.largest_scale = 10;
+  const LoopVerification loop = verifyLoop(camera, {}, map, turn + 2, 2, of_any_scale, 1);
+  ASSERT_TRUE(loop.accepted || loop.accepted_by_descriptors) << loop.reason;
+  LoopCorrection correction;
+  ASSERT_TRUE(computeCorrection(camera, map, turn + 2, 2, loop, {}, {}, correction));
+  ASSERT_TRUE(correction.join);
+  EXPECT_EQ(correction.join->from, 1);
+  EXPECT_EQ(correction.join->to, 0);
+  EXPECT_NEAR(correction.join->to_S_from.scale, 1 / apart.to_S_from.scale, 0.2 / apart.to_S_from.scale);
+  applyCorrection(correction, map);
+  EXPECT_EQ(worldsOf(map), std::vector<int>{0});
+  EXPECT_LT(test::positionError(map, *truth), 0.3);
+  EXPECT_TRUE(sortedAndWhole(map));
 }
 
 }  // namespace

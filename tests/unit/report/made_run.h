@@ -52,6 +52,7 @@ inline RunResult makeRun() {
                                          : TrackingState::tracking;
     if (initialising) frame.reason = "too little parallax, \"0.4\" of 1.5 degrees";
     frame.has_pose = frame.has_final_pose = frame.state == TrackingState::tracking;
+    frame.world = frame.final_world = frame.has_pose ? 0 : -1;
     frame.world_T_camera = frame.final_world_T_camera = inWorld(truth[static_cast<std::size_t>(i)].world_T_camera);
     frame.world_covariance.diagonal().setConstant(1e-4);
     frame.tracked_points = 300 + i, frame.mapped_points = 200 + i;
@@ -60,7 +61,7 @@ inline RunResult makeRun() {
     frame.times.add(Stage::flow, 1 + 0.01 * i);
     if (frame.is_keyframe) {
       frame.times.add(Stage::mapping, 40);
-      run.keyframes.push_back({static_cast<int>(run.keyframes.size()), frame.index, frame.time_ns,
+      run.keyframes.push_back({static_cast<int>(run.keyframes.size()), 0, frame.index, frame.time_ns,
                                frame.final_world_T_camera, "one second since the last", 120});
     }
     run.frames.push_back(frame);

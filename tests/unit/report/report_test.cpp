@@ -112,6 +112,23 @@ TEST(Report, aGroundTruthWithYUpIsTurned) {
   EXPECT_NEAR(frame.display_R_reference.toRotationMatrix().determinant(), 1, 1e-12);
 }
 
+TEST(Report, drawsTheMainWorldAlone) {
+  RunResult run = makeRun();
+  for (std::size_t i = 100; i < 120; ++i) run.frames[i].world = run.frames[i].final_world = 1;
+  run.keyframes.back().world = 1;
+  for (MapPointRecord& point : run.map_points) point.world = point.chain == 2 ? 1 : 0;
+  const nlohmann::json data = dataIn(pageOf(run, describeMadeRun(), std::nullopt));
+  EXPECT_EQ(data["trajectory"]["times"].size(), 89U);
+  EXPECT_EQ(data["live"]["times"].size(), 89U);
+  EXPECT_EQ(data["keyframes"].size(), run.keyframes.size() - 1);
+  EXPECT_EQ(data["map"]["points"], run.map_points.size() - made_points_per_line);
+  EXPECT_EQ(data["map"]["lines"].size(), static_cast<std::size_t>(made_lines - 1));
+  EXPECT_FALSE(data["states"].back()["final_pose"].get<bool>());
+  EXPECT_EQ(data["worlds_in_words"], "2 maps that were not joined: 89 frames in the main one, 20 in others");
+  EXPECT_EQ(data["summary"]["worlds"].size(), 2U);
+  EXPECT_EQ(dataIn(pageOf(makeRun(), describeMadeRun(), std::nullopt))["worlds_in_words"], "");
+}
+
 TEST(Report, publishedFiguresAreFoundByEveryNameOfASequence) {
   for (const char* name :
        {"fr2_desk", "rgbd_dataset_freiburg2_desk", "/data/rgbd_dataset_freiburg2_desk/", "FR2_DESK.tgz"}) {

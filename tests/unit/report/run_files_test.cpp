@@ -169,6 +169,97 @@ TEST_F(RunFiles, equalResultsGiveEqualBytesWhateverTheTimes) {
   }
 }
 
+// Two frames that were given out in world 1 before it was joined to world 0, and 20 in world 2, which stayed alone.
+RunResult makeRunOfSeveralWorlds() {
+  RunResult run = makeRun();
+  for (std::size_t i = 20; i < 22; ++i) run.frames[i].world = 1;
+  for (std::size_t i = 70; i < 90; ++i) run.frames[i].world = run.frames[i].final_world = 2;
+  run.keyframes[3].world = 2;
+  for (std::size_t i = 0; i < 50; ++i) run.map_points[i].world = 2;
+  return run;
+}
+
+TEST_F(RunFiles, eachWorldHasFilesOfItsOwn) {
+  const RunResult run = makeRunOfSeveralWorlds();
+  writeRunFiles(folder_.string(), run, describeMadeRun(), madeGroundTruth());
+  std::set<std::string> names = run_file_names;
+  names.insert({"trajectory_map1.txt", "trajectory_live_map1.txt", "keyframes_map1.txt", "map1.ply"});
+  names.insert("trajectory_live_map2.txt");  // of the world that was joined: it has no final pose
+  EXPECT_EQ(namesIn(folder_), names);
+  const auto poses = [this](const char* name) { return readTrajectory((folder_ / name).string()); };
+  const std::size_t all = made_frames - made_initialising_frames - 1;
+  EXPECT_EQ(poses("trajectory.txt").size(), all - 20);
+  EXPECT_EQ(poses("trajectory_live.txt").size(), all - 22);
+  EXPECT_EQ(poses("trajectory_live_map2.txt").size(), 2U);
+  for (const char* name : {"trajectory_map1.txt", "trajectory_live_map1.txt"}) {
+    ASSERT_EQ(poses(name).size(), 20U) << name;
+    EXPECT_EQ(poses(name).front().time_ns, run.frames[70].time_ns) << name;
+  }
+  EXPECT_EQ(poses("keyframes_map1.txt").size(), 1U);
+  EXPECT_EQ(poses("keyframes.txt").size(), run.keyframes.size() - 1);
+  EXPECT_NE(contentOf(folder_ / "map1.ply").find("element vertex 50\n"), std::string::npos);
+  EXPECT_NE(contentOf(folder_ / "map.ply").find("element vertex " + std::to_string(run.map_points.size() - 50) + "\n"),
+            std::string::npos);
+}
+
+TEST_F(RunFiles, theMainWorldNeedNotBeTheFirst) {
+  RunResult run = makeRunOfSeveralWorlds();
+  run.main_world = 2;
+  writeRunFiles(folder_.string(), run, describeMadeRun(), std::nullopt);
+  EXPECT_EQ(readTrajectory((folder_ / "trajectory.txt").string()).size(), 20U);
+  EXPECT_EQ(readTrajectory((folder_ / "trajectory_map1.txt").string()).front().time_ns,
+            run.frames[made_initialising_frames].time_ns);
+}
+
+TEST_F(RunFiles, filesOfWorldsOfAnEarlierRunDoNotStay) {
+  for (const char* name : {"trajectory_map3.txt", "trajectory_live_map12.txt", "keyframes_map1.txt", "map2.ply"}) {
+    std::ofstream(folder_ / name) << "of an earlier run";
+  }
+  std::set<std::string> names = run_file_names;
+  for (const char* name : {"trajectory_map.txt", "map.ply.old", "trajectory_map1.txt.bak", "map0.ply", "mapb.ply"}) {
+    std::ofstream(folder_ / name) << "of somebody else";
+    names.insert(name);
+  }
+  fs::create_directory(folder_ / "map7.ply");
+  names.insert("map7.ply");
+  writeRunFiles(folder_.string(), makeRun(), describeMadeRun(), std::nullopt);
+  EXPECT_EQ(namesIn(folder_), names);
+}
+
+TEST_F(RunFiles, frameTableTellsWorldsAndNoise) {
+  RunResult run = makeRunOfSeveralWorlds();
+  run.frames[20].noise_factor = 2.34567;
+  const auto table = tableOf(formatFrameTable(run));
+  const auto field = [&](std::size_t frame, const char* name) { return table[frame + 1][columnOf(table[0], name)]; };
+  EXPECT_EQ(field(0, "live_world"), "");
+  EXPECT_EQ(field(0, "final_world"), "");
+  EXPECT_EQ(field(20, "live_world"), "1");
+  EXPECT_EQ(field(20, "final_world"), "0");
+  EXPECT_EQ(field(70, "final_world"), "2");
+  EXPECT_EQ(field(20, "noise_factor"), "2.35");
+  EXPECT_EQ(field(21, "noise_factor"), "1");
+}
+
+TEST_F(RunFiles, summaryIsOfTheMainWorldAndTellsTheOthers) {
+  const RunResult run = makeRunOfSeveralWorlds();
+  writeRunFiles(folder_.string(), run, describeMadeRun(), madeGroundTruth());
+  const auto summary = nlohmann::json::parse(contentOf(folder_ / "summary.json"));
+  const int poses = made_frames - made_initialising_frames - 1 - 20;
+  EXPECT_EQ(summary["frames"]["with_pose"], poses);
+  EXPECT_EQ(summary["frames"]["with_live_pose"], poses - 2);
+  EXPECT_NEAR(summary["coverage_from_first_pose"].get<double>(), poses / 110.0, 1e-12);
+  EXPECT_EQ(summary["absolute_trajectory_error"]["trajectory"]["pairs"], poses);
+  EXPECT_EQ(summary["keyframes"], run.keyframes.size() - 1);
+  EXPECT_EQ(summary["map_points"], run.map_points.size() - 50);
+  ASSERT_EQ(summary["worlds"].size(), 2U);
+  EXPECT_EQ(summary["worlds"][0]["frames_with_pose"], poses);
+  EXPECT_EQ(summary["worlds"][1]["world"], 2);
+  EXPECT_EQ(summary["worlds"][1]["frames_with_pose"], 20);
+  EXPECT_EQ(summary["worlds"][1]["keyframes"], 1);
+  EXPECT_NEAR(summary["worlds"][1]["first_pose_s"].get<double>(), 70 / 30.0, 1e-3);
+  EXPECT_EQ(summary["recording_quality"], "");
+}
+
 TEST_F(RunFiles, mapHoldsEveryPoint) {
   const RunResult run = makeRun();
   writeRunFiles(folder_.string(), run, describeMadeRun(), std::nullopt);

@@ -37,6 +37,19 @@ TEST(ScaleFromDistance, IsMetresOverMapUnitsEitherWayRound) {
   }
 }
 
+TEST(ScaleFromDistance, FramesInTwoWorldsAreRefused) {
+  PositionHistory history;
+  for (int i = 0; i < 40; ++i) {
+    FrameResult frame = frameAt(i, {0.1 * i, 0, 0});
+    frame.world = i < 20 ? 0 : 3;
+    history.add(frame);
+  }
+  EXPECT_EQ(scaleOver(history, 5, 35, 2.0).problem, "the two frames are in maps that were not joined");
+  EXPECT_EQ(scaleOver(history, 5, 15, 2.0).world, 0);
+  EXPECT_EQ(scaleOver(history, 35, 25, 2.0).world, 3);
+  EXPECT_EQ(scaleOver(history, 35, 25, 2.0).problem, "");
+}
+
 TEST(ScaleFromDistance, OnlyTheUncertaintyAlongTheWayCounts) {
   Random random(3);
   const Pose turned = {random.rotation(1.2), {0, 0, 0}};

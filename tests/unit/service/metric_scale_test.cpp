@@ -52,6 +52,55 @@ TEST_F(MetricScaleTest, ADistanceBetweenFramesOfTwoMapsIsRefused) {
   EXPECT_FALSE(scale.isKnown());
 }
 
+FrameResult frameIn(int world, int index, TrackingState state = TrackingState::tracking) {
+  FrameResult frame = measuredFrame(index, {Eigen::Quaterniond::Identity(), {0.1 * index, 0, 0}});
+  frame.world = world;
+  frame.state = state;
+  return frame;
+}
+
+TEST_F(MetricScaleTest, EachWorldHasItsOwn) {
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  walkAndSet(scale);  // in world 0
+  scale.enterWorld(frameIn(1, 41));
+  EXPECT_FALSE(scale.isKnown());
+  EXPECT_EQ(publisher_.scale().kind, ScaleKind::unknown);
+  for (int i = 41; i <= 81; ++i) scale.frame(frameIn(1, i));
+  scale.enterWorld(frameIn(0, 82, TrackingState::relocalised));
+  EXPECT_TRUE(scale.isKnown());
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 0.5, 1e-9);
+  scale.enterWorld(frameWithoutPose(83, TrackingState::lost, "dark"));
+  EXPECT_TRUE(scale.isKnown()) << "no pose, no other world";
+
+  Command command;  // of the world that the camera has left
+  command.kind = CommandKind::set_scale;
+  command.from_utime = utimeOf(frameIn(1, 41).time_ns);
+  command.to_utime = utimeOf(frameIn(1, 81).time_ns);
+  command.distance_m = 12;
+  const CommandOutcome outcome = scale.set(command);
+  EXPECT_TRUE(outcome.accepted);
+  EXPECT_NE(outcome.message.find("a map that the camera is not in now"), std::string::npos) << outcome.message;
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 0.5, 1e-9);
+  scale.enterWorld(frameIn(1, 84, TrackingState::relocalised));
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 3, 1e-9);
+
+  command.from_utime = utimeOf(frameIn(0, 0).time_ns);
+  EXPECT_FALSE(scale.set(command).accepted) << "from one world to the other";
+}
+
+TEST_F(MetricScaleTest, WhileTheNextMapIsLookedForItIsUnknown) {
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  walkAndSet(scale);
+  scale.noMap();
+  EXPECT_FALSE(scale.isKnown());
+  EXPECT_EQ(publisher_.scale().kind, ScaleKind::unknown);
+  scale.enterWorld(frameIn(0, 50, TrackingState::relocalised));
+  EXPECT_TRUE(scale.isKnown()) << "the map was there all the time";
+  scale.noMap();
+  scale.enterWorld(frameIn(0, 60, TrackingState::tracking));
+  EXPECT_FALSE(scale.isKnown()) << "another map that began under the same number";
+}
+
 TEST_F(MetricScaleTest, ASavedMapBringsWhatIsConfigured) {
   MetricScale none(options_, Pose(), publisher_, work_, log_);
   none.takeConfigured();

@@ -24,6 +24,11 @@ TEST_F(RunLogTest, AStateIsToldWhenItChanges) {
   EXPECT_EQ(said(), "edgeslam: state: tracking\nedgeslam: state: lost, covered\n");
 }
 
+TEST_F(RunLogTest, AChangeOfTheWorldIsToldWithItsFrame) {
+  run_log_.tellWorld(120, "back in map 0 from map 1: found again there");
+  EXPECT_EQ(said(), "edgeslam: frame 120: back in map 0 from map 1: found again there\n");
+}
+
 TEST_F(RunLogTest, MessagesThatDoNotGoOutAreToldAndThatTheyDoAgain) {
   for (const char* problem : {"", "no route", "no route", ""}) run_log_.tellChanges("", problem);
   EXPECT_EQ(said(), "edgeslam: messages do not go out: no route\nedgeslam: messages go out again\n");

@@ -64,6 +64,18 @@ TEST_F(RunPublisherTest, ASignalForTheMapWithoutAFileIsToldOnce) {
   EXPECT_EQ(said_.str(), "edgeslam: no file is configured for the map (map.file)\n");
 }
 
+TEST_F(RunPublisherTest, AChangeOfTheWorldIsToldAndCounted) {
+  FrameResult frame = measuredFrame(0, Pose());
+  frame.world = 0;
+  publisher_->frame(frame, "");
+  publisher_->frame(frameWithoutPose(1, TrackingState::lost, "covered"), "");
+  frame.index = 2, frame.world = 1;
+  publisher_->frame(frame, "");
+  ASSERT_TRUE(log_.waitUntilOut());
+  EXPECT_EQ(said_.str(), "edgeslam: frame 2: map 1 is begun beside map 0: lost there, covered\n");
+  EXPECT_EQ(publisher_->status().worlds, 2);
+}
+
 TEST_F(RunPublisherTest, TotalsGoOnOverRuns) {
   for (int i = 0; i < 3; ++i) run_->handOver();
   link_.lost(2);

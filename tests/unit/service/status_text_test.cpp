@@ -19,6 +19,9 @@ TEST(StatusText, TheServiceManagerSeesTheMapAndTheRecording) {
   EXPECT_EQ(serviceText(status, TrackingState::tracking, false), "tracking, 3 keyframes, 400 points");
   status.recording = true;
   EXPECT_EQ(serviceText(status, TrackingState::lost, true), "lost, 3 keyframes, 400 points, recording with gaps");
+  status.worlds = 2;
+  EXPECT_EQ(serviceText(status, TrackingState::tracking, false),
+            "tracking, 3 keyframes, 400 points in 2 maps, recording");
   status.camera_problem = "/dev/video0 is gone";
   EXPECT_EQ(serviceText(status, TrackingState::lost, true), "no camera: /dev/video0 is gone");
 }

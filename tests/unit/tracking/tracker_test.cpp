@@ -168,7 +168,9 @@ TEST(Tracker, AnOlderOrForeignViewIsIgnored) {
   adopt(run.tracker, older);
   MapView foreign = moved(run.view, elsewhere_pose);
   foreign.version = 1000;
-  foreign.origin_frame = 1;
+  foreign.world = 1;
+  foreign.keyframes = {{100, elsewhere_pose, nullptr}};
+  for (ViewPoint& point : foreign.points) point.host = point.source = 100;
   adopt(run.tracker, foreign);
   EXPECT_EQ(run.tracker.view().version, run.view.version);
   const Outcome is = trackFrame(run.tracker, 3), should_be = trackFrame(undisturbed.tracker, 3);
@@ -221,7 +223,7 @@ TEST(Tracker, BlackForLongIsNeverTaken) {
   Tracked run(2);
   for (int i = 3; i < 40; ++i) {  // longer than the blur gate rejects frames in a row
     const Outcome outcome = track(run.tracker, i, i * interval_ns, black());
-    ASSERT_TRUE(outcome.state == TrackingState::predicted || outcome.state == TrackingState::lost) << i;
+    ASSERT_FALSE(isGoodPose(outcome.state)) << i;
     ASSERT_FALSE(outcome.tells_mapping) << i;
   }
 }
@@ -300,7 +302,7 @@ TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
   Tracked run(2);
   ASSERT_EQ(track(run.tracker, 3, 3 * interval_ns, elsewhere()).state, TrackingState::lost);
   // So long after, the last frame's points are not looked for any more.
-  const std::int64_t later_ns = 3'000'000'000;
+  const std::int64_t later_ns = 900'000'000;
   const Outcome lost = track(run.tracker, 90, later_ns, imageAt(8));
   ASSERT_EQ(lost.state, TrackingState::lost);
   ASSERT_TRUE(run.tracker.hasLostFrame());
@@ -330,6 +332,86 @@ TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
       EXPECT_GT(outcome.for_mapping.keyframe, kept.keyframe) << "after the view's and the kept frame's";
     }
   }
+}
+
+// The same place as another world, whose keyframes have numbers from 60 on.
+MapView ofAnotherWorld(MapView view, int world) {
+  view.world = world;
+  const ViewKeyframe keyframe = view.keyframes.back();
+  view.keyframes.clear();
+  view.keyframes.push_back({60, keyframe.world_T_camera, keyframe.images, keyframe.uncertainty});
+  for (ViewPoint& point : view.points) point.host = point.source = 60;
+  view.latest_keyframe = 60;
+  return view;
+}
+
+TEST(Tracker, LostForASecondItBeginsAWorldBesideTheOldOne) {
+  Tracked run(2);
+  EXPECT_EQ(run.outcome.world, 0);
+  const std::int64_t lost_ns = 3 * interval_ns;
+  const Outcome lost = track(run.tracker, 3, lost_ns, elsewhere());
+  EXPECT_EQ(lost.state, TrackingState::lost);
+  EXPECT_EQ(lost.world, -1);
+  EXPECT_EQ(track(run.tracker, 4, lost_ns + 990'000'000, elsewhere()).state, TrackingState::lost);
+  EXPECT_FALSE(run.tracker.startsBesideOthers());
+  const Outcome begun = track(run.tracker, 5, lost_ns + 1'010'000'000, elsewhere());
+  EXPECT_EQ(begun.state, TrackingState::initialising);
+  EXPECT_EQ(begun.world, -1);
+  ASSERT_TRUE(begun.tells_mapping);
+  EXPECT_EQ(begun.for_mapping.kind, FrameKind::first);
+  EXPECT_GT(begun.for_mapping.keyframe, 0);
+  // And it is looked for in the old one.
+  ASSERT_TRUE(run.tracker.startsBesideOthers());
+  TrackedFrame asked;
+  run.tracker.keepStartingFrame(asked);
+  EXPECT_EQ(asked.kind, FrameKind::lost);
+  EXPECT_EQ(asked.frame_index, 5);
+  EXPECT_EQ(asked.world, 0);
+  ASSERT_TRUE(asked.images);
+  // A start that fails begins again with the same number.
+  const Outcome again = track(run.tracker, 6, lost_ns + 1'030'000'000, black());
+  const Outcome anew = track(run.tracker, 7, lost_ns + 1'050'000'000, imageAt(7));
+  EXPECT_FALSE(again.tells_mapping);
+  ASSERT_TRUE(anew.tells_mapping);
+  EXPECT_EQ(anew.for_mapping.keyframe, begun.for_mapping.keyframe);
+}
+
+TEST(Tracker, WithoutNewWorldsItStaysLost) {
+  TrackerOptions options;
+  options.worlds_enabled = false;
+  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), options);
+  MapView view = knownMap(trackFrame(tracker, 0).for_mapping);
+  tracker.adopt(view);
+  ASSERT_EQ(trackFrame(tracker, 1).state, TrackingState::tracking);
+  for (int i = 2; i < 10; ++i) {
+    EXPECT_EQ(track(tracker, i, i * 1'000'000'000LL, elsewhere()).state, TrackingState::lost) << i;
+  }
+}
+
+// Its world became part of another: the pose goes along, and so does the unit.
+TEST(Tracker, JoinedToAnotherWorldItGoesOnThere) {
+  Tracked run(3), alone(3);
+  const Pose new_T_old{rotationExp({0.4, -1.1, 0.7}), {3, -2, 8}};
+  MapView view = moved(run.view, new_T_old, 2.5);
+  view.world = 7;
+  adopt(run.tracker, view);
+  for (int i = 4; i <= 6; ++i) {
+    const Outcome is = trackFrame(run.tracker, i), was = trackFrame(alone.tracker, i);
+    ASSERT_EQ(is.state, TrackingState::tracking) << is.reason;
+    EXPECT_EQ(is.world, 7);
+    Pose should_be = was.world_T_camera;
+    should_be.translation *= 2.5;
+    EXPECT_LT(distance(is.world_T_camera, new_T_old * should_be), 2e-3) << i;
+  }
+}
+
+TEST(Tracker, AWorldThatItIsNotInIsNotTakenOver) {
+  Tracked run(2);
+  MapView other = ofAnotherWorld(run.view, 1);
+  other.version = run.view.version + 5;
+  adopt(run.tracker, other);
+  EXPECT_EQ(run.tracker.view().world, 0);
+  EXPECT_EQ(trackFrame(run.tracker, 3).world, 0);
 }
 
 }  // namespace

@@ -93,6 +93,7 @@ TEST(ViewMessages, TheStateIsJsonWithFiniteNumbers) {
   const Json json = Json::parse(stateMessage(state, {{7, TrackingState::lost, NAN, 2.5}}).substr(1));
   EXPECT_EQ(json["frame"]["state"], "lost");
   EXPECT_TRUE(json["frame"]["pose"].is_null());
+  EXPECT_EQ(json["frame"]["world"], -1);
   EXPECT_EQ(json["scale"]["from"], "odometry");
   EXPECT_TRUE(json["scale"]["metres_per_unit"].is_null());
   EXPECT_EQ(json["samples"][0][0], 7);

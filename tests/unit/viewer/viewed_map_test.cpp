@@ -176,7 +176,7 @@ TEST(ViewedMap, OnlyWhatChangedIsSent) {
 TEST(ViewedMap, HasItsPointsAndKeyframes) {
   SavedMap saved = test::madeMap(64, 48);
   for (auto& [id, point] : saved.map.points) point.inverse_depth = std::abs(point.inverse_depth) + 0.1;
-  const ViewedMap map = viewedMap(saved.map, saved.camera, 1);
+  const ViewedMap map = viewedMap(saved.map, 0, saved.camera, 1);
   EXPECT_EQ(map.points.size(), saved.map.points.size());
   EXPECT_EQ(map.points_in_map, saved.map.points.size());
   ASSERT_EQ(map.keyframes.size(), 4U);
@@ -189,8 +189,17 @@ TEST(ViewedMap, HasItsPointsAndKeyframes) {
   EXPECT_FLOAT_EQ(map.keyframes[0].pose[6], static_cast<float>(first.rotation.w()));
 }
 
+TEST(ViewedMap, ShowsOneWorldAlone) {
+  const SavedMap saved = test::madeMap(64, 48);
+  const ViewedMap other = viewedMap(saved.map, 7, saved.camera, 1);
+  EXPECT_TRUE(other.points.empty());
+  EXPECT_TRUE(other.keyframes.empty());
+  EXPECT_EQ(other.points_in_map, 0U);
+  EXPECT_EQ(Reader(mapMessage(other, nullptr)).description["world"], 7);
+}
+
 TEST(ViewedMap, AnEmptyMapAndAHugeOneAreBoundedAndGrowthLeavesTheShownOnesThere) {
-  const ViewedMap empty = viewedMap(Map(), Camera(), 1);
+  const ViewedMap empty = viewedMap(Map(), 0, Camera(), 1);
   EXPECT_TRUE(empty.points.empty());
   EXPECT_TRUE(received(mapMessage(empty, nullptr), {}).points.empty());
 
@@ -207,7 +216,7 @@ TEST(ViewedMap, AnEmptyMapAndAHugeOneAreBoundedAndGrowthLeavesTheShownOnesThere)
     }
   };
   grow(0, 45000);
-  const ViewedMap huge = viewedMap(saved.map, saved.camera, 1);
+  const ViewedMap huge = viewedMap(saved.map, 0, saved.camera, 1);
   EXPECT_LE(huge.points.size(), most_viewed_points);
   EXPECT_GT(huge.points.size(), most_viewed_points - 10);
   EXPECT_EQ(huge.points_in_map, 45000U);
@@ -217,7 +226,7 @@ TEST(ViewedMap, AnEmptyMapAndAHugeOneAreBoundedAndGrowthLeavesTheShownOnesThere)
   EXPECT_NEAR(of_first_half, 10000, 500) << "spread evenly";
 
   grow(45000, 46000);
-  const ViewedMap larger = viewedMap(saved.map, saved.camera, 2);
+  const ViewedMap larger = viewedMap(saved.map, 0, saved.camera, 2);
   Reader reader(mapMessage(larger, &huge));
   EXPECT_LT(reader.description["new_points"].get<int>(), 2000);
 }

@@ -75,7 +75,7 @@ TEST(Viewer, TheStreamBringsWhatIsShownAndNobodyIsServedUnwatched) {
     client.send(get("/stream"));
     ASSERT_TRUE(comesTrue([&] { return viewer.isWatched(); }));
     viewer.frame(measuredFrame(2, Pose()));
-    viewer.map(std::make_shared<Map>(test::madeMap(64, 48).map));
+    viewer.map(std::make_shared<Map>(test::madeMap(64, 48).map), 0);
     viewer.status({}, {}, "the network is down");
     std::string received;
     EXPECT_TRUE(comesTrue([&] {
@@ -223,7 +223,7 @@ TEST(Viewer, AClientThatDoesNotReadIsDroppedAndHoldsNobodyUp) {
   std::chrono::duration<double> longest{0};
   EXPECT_TRUE(comesTrue([&] {
     const auto start = std::chrono::steady_clock::now();
-    viewer.map(large[shown++ % 2]);
+    viewer.map(large[shown++ % 2], 0);
     viewer.frame(measuredFrame(1, Pose()));
     longest = std::max<std::chrono::duration<double>>(longest, std::chrono::steady_clock::now() - start);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));

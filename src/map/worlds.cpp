@@ -1,0 +1,81 @@
+#include "map/worlds.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace edgeslam {
+namespace {
+
+void forgetPointsWithoutHost(Map& map) {
+  for (auto point = map.points.begin(); point != map.points.end();) {
+    point = map.keyframes.contains(point->second.host) ? std::next(point) : map.points.erase(point);
+  }
+}
+
+}  // namespace
+
+std::vector<int> worldsOf(const Map& map) {
+  std::vector<int> worlds;
+  for (const Keyframe& keyframe : map.keyframes) {
+    const auto place = std::lower_bound(worlds.begin(), worlds.end(), keyframe.world);
+    if (place == worlds.end() || *place != keyframe.world) worlds.insert(place, keyframe.world);
+  }
+  return worlds;
+}
+
+std::vector<KeyframeId> keyframesOf(const Map& map, int world) {
+  std::vector<KeyframeId> keyframes;
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (keyframe.world == world) keyframes.push_back(keyframe.id);
+  }
+  return keyframes;
+}
+
+KeyframeId firstKeyframeOf(const Map& map, int world) {
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (keyframe.world == world) return keyframe.id;
+  }
+  return -1;
+}
+
+KeyframeId latestKeyframeOf(const Map& map, int world) {
+  for (std::size_t place = map.keyframes.size(); place-- > 0;) {
+    if (map.keyframes.atPlace(place).world == world) return map.keyframes.atPlace(place).id;
+  }
+  return -1;
+}
+
+KeyframeId keyframeBefore(const Map& map, KeyframeId id) {
+  const int world = map.keyframes[id].world;
+  for (std::size_t place = map.keyframes.placeOf(id); place-- > 0;) {
+    if (map.keyframes.atPlace(place).world == world) return map.keyframes.atPlace(place).id;
+  }
+  return -1;
+}
+
+bool forgetFrom(Map& map, KeyframeId first) {
+  if (map.keyframes.empty() || map.keyframes.back().id < first) return false;
+  while (!map.keyframes.empty() && map.keyframes.back().id >= first) map.keyframes.erase(map.keyframes.back().id);
+  forgetPointsWithoutHost(map);
+  return true;
+}
+
+void forgetWorld(Map& map, int world) {
+  for (const KeyframeId id : keyframesOf(map, world)) map.keyframes.erase(id);
+  forgetPointsWithoutHost(map);
+}
+
+void joinWorlds(const WorldJoin& join, Map& map) {
+  for (auto& [id, point] : map.points) {
+    if (map.keyframes[point.host].world != join.from) continue;
+    point.inverse_depth /= join.to_S_from.scale;
+    point.inverse_depth_sigma /= join.to_S_from.scale;
+  }
+  for (Keyframe& keyframe : map.keyframes) {
+    if (keyframe.world != join.from) continue;
+    keyframe.world_T_camera = moved(join.to_S_from, keyframe.world_T_camera);
+    keyframe.world = join.to;
+  }
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,56 @@
+#include "tracking/measured_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/median.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr double quantile = 0.35;
+constexpr double quantile_of_normal = 0.4538;  // 35 % of normally distributed values are within so many deviations
+constexpr double far_sigmas = 12;
+constexpr int fewest_points = 20;
+constexpr double share_of_step = 0.1;  // that a frame moves the factor towards what it says, the first ones more ...
+constexpr double largest_ratio = 3;    // ... and the most that it is taken to say
+
+}  // namespace
+
+NoiseEvidence noiseEvidence(const std::pmr::vector<double>& errors_across, std::pmr::memory_resource* memory) {
+  NoiseEvidence evidence;
+  evidence.points = static_cast<int>(errors_across.size());
+  if (errors_across.empty()) return evidence;
+  std::pmr::vector<double> errors(memory);
+  errors.reserve(errors_across.size());
+  for (const double error : errors_across) errors.push_back(std::abs(error));
+  const auto near = std::count_if(errors.begin(), errors.end(), [](double error) { return error < far_sigmas; });
+  evidence.share_within_12_sigma = static_cast<double>(near) / static_cast<double>(errors.size());
+  const auto at = errors.begin() + static_cast<std::ptrdiff_t>(quantile * static_cast<double>(errors.size()));
+  std::nth_element(errors.begin(), at, errors.end());
+  evidence.ratio = *at / quantile_of_normal;
+  return evidence;
+}
+
+double MeasuredNoise::observe(const NoiseEvidence& evidence) {
+  const bool says_something = evidence.points >= fewest_points &&
+                              evidence.share_within_12_sigma >= options_.least_share_within_12_sigma &&
+                              std::isfinite(evidence.ratio);
+  if (!says_something) return 1;
+  const double before = factor_;
+  const double share = std::max(share_of_step, 1.0 / ++observed_);
+  const double step = 1 + share * (std::min(evidence.ratio, largest_ratio) - 1);
+  factor_ = std::clamp(factor_ * step, 1.0, std::max(1.0, options_.most));
+  return factor_ / before;
+}
+
+double noiseFactorOf(const Keyframe& keyframe, const PointAccuracyOptions& presumed) {
+  std::vector<double> factors;
+  for (const PointObservation& observation : keyframe.observations) {
+    factors.push_back(observation.measurement.sigma_normal /
+                      (observation.corner ? presumed.sigma_corner : presumed.sigma_edge));
+  }
+  return factors.empty() ? 1 : std::max(1.0, upperMedian(factors));
+}
+
+}  // namespace edgeslam
