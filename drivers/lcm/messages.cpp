@@ -24,18 +24,18 @@ void put(const Matrix6d& from, double (&to)[6][6]) {
   }
 }
 
-struct Twist {
+struct BodyTwist {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();       // body frame
   Eigen::Vector3d rotation_rate = Eigen::Vector3d::Zero();  // body frame [rad/s]
 };
 
-Twist twistOf(const BodyMotion& motion) {
+BodyTwist twistOf(const BodyMotion& motion) {
   const Pose& moved = motion.before_T_now;
   return {moved.rotation.conjugate() * moved.translation / motion.seconds,
           rotationLog(moved.rotation) / motion.seconds};
 }
 
-state_t stateMessage(const FrameResult& result, const RobotSetup& robot, const Twist* twist) {
+state_t stateMessage(const FrameResult& result, const RobotSetup& robot, const BodyTwist* twist) {
   state_t state;
   state.utime = utimeOf(result.time_ns);
   state.frame = result.index;
@@ -105,7 +105,7 @@ PublishedFrame frameMessages(const FrameResult& result, const RobotSetup& robot,
   const std::optional<MeasuredPose> now = measuredPose(result);
   std::optional<BodyMotion> motion;
   if (now && before) motion = bodyMotion(*before, *now, robot);
-  Twist twist;
+  BodyTwist twist;
   if (motion) twist = twistOf(*motion);
 
   PublishedFrame messages;

@@ -41,7 +41,12 @@ void forEachResidual(const Camera& camera, const BundleProblem& problem, bool de
     const BundleObservation& o = problem.observations[k];
     const BundlePoint& p = problem.points[at(o.point)];
     if (!usable(p) || !usable(o.measurement)) continue;
-    const CameraFrame &host = frames[at(p.host)], &target = frames[at(o.camera)];
+    CameraFrame host = frames[at(p.host)], target = frames[at(o.camera)];
+    host.centre += host.world_R_camera * p.host_origin;
+    const Twist& twist = problem.cameras[at(o.camera)].twist;
+    if (camera.readout_s != 0 && !twist.isZero(0)) {
+      target = rowFrame(target, cameraFrame(rowPose(camera, twist, o.measurement.pixel.y())));
+    }
     Eigen::Vector2d residual;
     Matrix23d by_sight = Matrix23d::Zero();
     const bool seen = sightResidual(camera, {o.measurement.pixel, whitening(o.measurement)}, target,
@@ -108,7 +113,11 @@ bool keepScale(const std::vector<BundleCamera>& before, BundleProblem& problem) 
     Eigen::Vector3d& centre = problem.cameras[i].world_T_camera.translation;
     centre = origin + scale * (centre - origin);
   }
-  for (BundlePoint& p : problem.points) p.inverse_depth /= scale;
+  for (BundleCamera& c : problem.cameras) c.twist.head<3>() *= scale;
+  for (BundlePoint& p : problem.points) {
+    p.inverse_depth /= scale;
+    p.host_origin *= scale;
+  }
   return true;
 }
 
@@ -141,7 +150,7 @@ bool readBack(const BundleStructure& structure, const BundleState& state, Bundle
 BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const BundleOptions& options,
                           const std::atomic<bool>* interrupted) {
   BundleResult result;
-  const auto finite_camera = [](const BundleCamera& c) { return finite(c.world_T_camera); };
+  const auto finite_camera = [](const BundleCamera& c) { return finite(c.world_T_camera) && c.twist.allFinite(); };
   if (!indicesInRange(problem) || !std::all_of(problem.cameras.begin(), problem.cameras.end(), finite_camera)) {
     result.errors.assign(problem.observations.size(), infinity);
     result.depth_sigmas.assign(problem.points.size(), 0);

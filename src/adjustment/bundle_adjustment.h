@@ -9,21 +9,25 @@
 #include "geometry/camera.h"
 #include "geometry/measurement.h"
 #include "geometry/pose.h"
+#include "geometry/rolling_shutter.h"
 
 namespace edgeslam {
 
 struct BundleCamera {
   Pose world_T_camera;
   bool fixed = false;
+  Twist twist = Twist::Zero();  // its motion while its rows are read; taken as it is
 };
 
 struct BundlePoint {
-  int host = 0;  // index of the host camera
-  Eigen::Vector3d host_bearing;
+  int host = 0;                  // index of the host camera
+  Eigen::Vector3d host_bearing;  // unit, host camera frame
   double inverse_depth = 1;
   bool fixed = false;
   double prior_sigma = 0;          // over 0: a prior on the inverse depth with this standard deviation ...
   double prior_inverse_depth = 1;  // ... around this value
+  // Where the bearing starts from, host camera frame: not its centre where the host moved as it read the row.
+  Eigen::Vector3d host_origin = Eigen::Vector3d::Zero();
 };
 
 struct BundleObservation {

@@ -60,7 +60,8 @@ class Linearizer {
     const CameraFrame& host = state_.frames[at(point.host)];
     eliminated.inverse_depth = state_.inverse_depths[index];
     const Eigen::Vector3d ray = host.world_R_camera * point.host_bearing;
-    eliminated.lever = ray + eliminated.inverse_depth * (host.centre - linearization_.origin);
+    host_centre_ = hostCentre(point, host);
+    eliminated.lever = ray + eliminated.inverse_depth * (host_centre_ - linearization_.origin);
     equations_.information = point.prior_information;
     equations_.gradient = point.prior_information * (eliminated.inverse_depth - point.prior_inverse_depth);
     equations_.mixed.assign(at(point.end_viewer - point.first_viewer), Vector6d::Zero());
@@ -76,8 +77,9 @@ class Linearizer {
   void addObservation(const StructuredPoint& point, const EliminatedPoint& eliminated, const Eigen::Vector3d& ray,
                       int k) {
     const StructuredObservation& o = structure_.observations[at(k)];
-    const CameraFrame& target = state_.frames[at(o.target)];
-    const Eigen::Vector3d baseline = state_.frames[at(point.host)].centre - target.centre;
+    CameraFrame row;
+    const CameraFrame& target = targetFrame(structure_, state_, o, row);
+    const Eigen::Vector3d baseline = host_centre_ - target.centre;
     Eigen::Vector3d& mixed = linearization_.mixed[at(k)];
     Eigen::Vector2d residual;
     Matrix23d by_sight;
@@ -174,6 +176,7 @@ class Linearizer {
   double huber_, damping_;
   BundleLinearization& linearization_;
   PointEquations equations_;
+  Eigen::Vector3d host_centre_ = Eigen::Vector3d::Zero();  // of the point at hand
 };
 
 void mirrorLowerTriangle(Matrix6d& block) {
@@ -209,12 +212,14 @@ double bundleCost(const Camera& camera, const BundleStructure& structure, const 
     const StructuredPoint& point = structure.points[i];
     const CameraFrame& host = state.frames[at(point.host)];
     const Eigen::Vector3d ray = host.world_R_camera * point.host_bearing;
+    const Eigen::Vector3d host_centre = hostCentre(point, host);
     cost += priorCost(point, state.inverse_depths[i]);
     for (int k = point.first_observation; k < point.end_observation; ++k) {
       const StructuredObservation& o = structure.observations[at(k)];
-      const CameraFrame& target = state.frames[at(o.target)];
+      CameraFrame row;
+      const CameraFrame& target = targetFrame(structure, state, o, row);
       Eigen::Vector2d residual(behind_norm, 0);
-      sightResidual(camera, o.measured, target, ray + state.inverse_depths[i] * (host.centre - target.centre), residual,
+      sightResidual(camera, o.measured, target, ray + state.inverse_depths[i] * (host_centre - target.centre), residual,
                     nullptr);
       cost += 0.5 * huberLoss(residual.squaredNorm(), huber);
     }

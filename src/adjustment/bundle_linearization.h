@@ -20,6 +20,20 @@ struct BundleState {
   std::vector<double> inverse_depths;         // of the structure's points
 };
 
+// The target as it reads the observation's row; `row` serves for it where the target moves meanwhile.
+inline const CameraFrame& targetFrame(const BundleStructure& structure, const BundleState& state,
+                                      const StructuredObservation& observation, CameraFrame& row) {
+  const CameraFrame& target = state.frames[static_cast<std::size_t>(observation.target)];
+  if (observation.row < 0) return target;
+  row = rowFrame(target, structure.rows[static_cast<std::size_t>(observation.row)]);
+  return row;
+}
+
+// Where a point's bearing starts from, world frame.
+inline Eigen::Vector3d hostCentre(const StructuredPoint& point, const CameraFrame& host) {
+  return host.centre + host.world_R_camera * point.host_origin;
+}
+
 // Whitened norm that an observation behind its camera counts with, without pulling at anything: enough that no step is
 // taken for bringing points there, little enough that a single point does not forbid a step.
 constexpr double behind_norm = 100;

@@ -70,7 +70,7 @@ double dampingFactor(double gain, double expected) {
 
 int minimizeBundle(const Camera& camera, const BundleProblem& problem, const BundleOptions& options,
                    const std::atomic<bool>* interrupted, BundleWorkspace& workspace) {
-  structureBundle(problem, most_dense_cameras, workspace.structure);
+  structureBundle(camera, problem, most_dense_cameras, workspace.structure);
   if (workspace.structure.points.empty()) return -1;
   workspace.solver.prepare(workspace.structure);
   readState(problem, workspace.structure, workspace.state);

@@ -57,12 +57,13 @@ void nameUnknowns(const BundleProblem& problem, BundleStructure& structure) {
 }
 
 // Copies the point's observations and lists its viewers.
-void addPoint(const BundleProblem& problem, int index, BundleStructure& structure) {
+void addPoint(const Camera& camera, const BundleProblem& problem, int index, BundleStructure& structure) {
   const int first = structure.first_of_point[at(index)], end = structure.first_of_point[at(index) + 1];
   if (first == end) return;
   const BundlePoint& p = problem.points[at(index)];
   StructuredPoint point;
   point.host_bearing = p.host_bearing;
+  point.host_origin = p.host_origin;
   point.index = index;
   point.host = p.host;
   point.free = !p.fixed;
@@ -88,7 +89,11 @@ void addPoint(const BundleProblem& problem, int index, BundleStructure& structur
       host_listed = true;
     }
     structure.observations.push_back(
-        {{o.measurement.pixel, whitening(o.measurement)}, o.camera, unknown < 0 ? -1 : list(unknown)});
+        {{o.measurement.pixel, whitening(o.measurement)}, o.camera, unknown < 0 ? -1 : list(unknown), -1});
+    const Twist& twist = problem.cameras[at(o.camera)].twist;
+    if (camera.readout_s == 0 || twist.isZero(0)) continue;
+    structure.observations.back().row = static_cast<int>(structure.rows.size());
+    structure.rows.push_back(cameraFrame(rowPose(camera, twist, o.measurement.pixel.y())));
   }
   if (!host_listed) point.host_viewer = list(host_unknown);
   point.end_viewer = static_cast<int>(structure.viewers.size());
@@ -142,7 +147,7 @@ void placeBlocks(int most_dense, BundleStructure& structure) {
 }  // namespace
 
 bool usable(const BundlePoint& point) {
-  return point.host_bearing.allFinite() && point.inverse_depth > 0 && std::isfinite(point.inverse_depth) &&
+  return point.host_bearing.allFinite() && point.host_origin.allFinite() && point.inverse_depth > 0 && std::isfinite(point.inverse_depth) &&
          std::isfinite(point.prior_sigma) && std::isfinite(point.prior_inverse_depth);
 }
 
@@ -151,13 +156,14 @@ bool usable(const Measurement& measurement) {
          measurement.sigma_tangent > 0;
 }
 
-void structureBundle(const BundleProblem& problem, int most_dense, BundleStructure& structure) {
+void structureBundle(const Camera& camera, const BundleProblem& problem, int most_dense, BundleStructure& structure) {
   orderObservations(problem, structure);
   nameUnknowns(problem, structure);
   structure.points.clear();
   structure.observations.clear();
+  structure.rows.clear();
   structure.viewers.clear();
-  for (std::size_t i = 0; i < problem.points.size(); ++i) addPoint(problem, static_cast<int>(i), structure);
+  for (std::size_t i = 0; i < problem.points.size(); ++i) addPoint(camera, problem, static_cast<int>(i), structure);
   placeBlocks(most_dense, structure);
 }
 

@@ -15,11 +15,12 @@ struct StructuredObservation {
   WhitenedPixel measured;
   int target = 0;   // camera
   int viewer = -1;  // which of the point's viewers the target is; -1: fixed
+  int row = -1;     // of the structure's rows; -1: the target does not move while it is read
 };
 
 // Cameras that are free and bear on a point (its host and its targets) are its viewers.
 struct StructuredPoint {
-  Eigen::Vector3d host_bearing;
+  Eigen::Vector3d host_bearing, host_origin;
   int index = 0;  // in the problem
   int host = 0;   // camera
   bool free = false;
@@ -39,6 +40,7 @@ struct BlockPlace {
 struct BundleStructure {
   std::vector<StructuredPoint> points;
   std::vector<StructuredObservation> observations;
+  std::vector<CameraFrame> rows;       // camera_T_row of those read while their camera moves
   std::vector<int> viewers;            // unknown of each viewer of each point, ascending within a point
   std::vector<int> blocks;             // block of each pair of viewers of each point
   std::vector<int> camera_of_unknown;  // cameras that are free and observed, ascending
@@ -60,6 +62,6 @@ bool usable(const Measurement& measurement);
 // Indices must be in range. Takes out observations without effect (by the point's own host, of or by what is not
 // usable, or where nothing is free), and points that have none left. Up to `most_dense` free cameras the reduced system
 // has all its blocks.
-void structureBundle(const BundleProblem& problem, int most_dense, BundleStructure& structure);
+void structureBundle(const Camera& camera, const BundleProblem& problem, int most_dense, BundleStructure& structure);
 
 }  // namespace edgeslam

@@ -13,6 +13,7 @@ namespace {
 struct PreparedObservation {
   Eigen::Vector3d point;  // world frame
   WhitenedPixel measured;
+  double row_time_s = 0;  // when its row is read, after the middle one
 };
 
 // Whitening of a measurement whose point's depth is uncertain too: Cholesky of diag(sigma_normal^2, sigma_tangent^2)
@@ -34,14 +35,54 @@ Eigen::Matrix2d whiteningWithDepth(const PoseObservation& observation) {
 
 using PreparedObservations = std::pmr::vector<PreparedObservation>;
 
-PreparedObservations prepare(const PoseObservations& observations, std::pmr::memory_resource* memory) {
+PreparedObservations prepare(const Camera& camera, const PoseObservations& observations, std::pmr::memory_resource* memory) {
   PreparedObservations prepared(memory);
   prepared.reserve(observations.size());
   for (const PoseObservation& o : observations) {
-    prepared.push_back({o.point, {o.measurement.pixel, whiteningWithDepth(o)}});
+    prepared.push_back({o.point, {o.measurement.pixel, whiteningWithDepth(o)}, rowTime(camera, o.measurement.pixel.y())});
   }
   return prepared;
 }
+
+// The residuals of a camera whose rows are read at once.
+class GlobalShutter {
+ public:
+  GlobalShutter(const Camera& camera, const Pose& world_T_camera)
+      : camera_(camera), frame_(cameraFrame(world_T_camera)) {}
+
+  bool residual(const PreparedObservation& o, Eigen::Vector2d& residual, Matrix26d& jacobian) const {
+    return poseResidual(camera_, o.measured, frame_, o.point, residual, &jacobian);
+  }
+
+ private:
+  const Camera& camera_;
+  CameraFrame frame_;
+};
+
+// The residuals of a camera that moves while its rows are read.
+class RollingShutter {
+ public:
+  RollingShutter(const Camera& camera, const RowMotion& motion, const Pose& world_T_camera)
+      : camera_(camera),
+        frame_(cameraFrame(world_T_camera)),
+        twist_(twistOf(motion, world_T_camera, &twist_by_pose_)),
+        is_tied_(motion.seconds > 0) {}
+
+  bool residual(const PreparedObservation& o, Eigen::Vector2d& residual, Matrix26d& jacobian) const {
+    Matrix26d by_twist;
+    if (!rowResidual(camera_, o.measured, frame_, twist_, o.row_time_s, o.point, residual, jacobian, by_twist))
+      return false;
+    if (is_tied_) jacobian.noalias() += by_twist * twist_by_pose_;
+    return true;
+  }
+
+ private:
+  const Camera& camera_;
+  CameraFrame frame_;
+  Matrix6d twist_by_pose_;  // before the twist, which is made together with it
+  Twist twist_;
+  bool is_tied_;
+};
 
 // The robust cost at a pose and its normal equations, weights frozen at that pose.
 struct NormalEquations {
@@ -50,15 +91,15 @@ struct NormalEquations {
   Vector6d gradient = Vector6d::Zero();
 };
 
-NormalEquations linearize(const Camera& camera, const Pose& world_T_camera, const PreparedObservations& observations,
-                          double huber, double behind_norm) {
-  const CameraFrame frame = cameraFrame(world_T_camera);
+template <typename Shutter>
+NormalEquations linearize(const Shutter& shutter, const PreparedObservations& observations, double huber,
+                          double behind_norm) {
   const double behind_cost = huberLoss(behind_norm * behind_norm, huber);
   NormalEquations equations;
   for (const PreparedObservation& o : observations) {
     Eigen::Vector2d residual;
     Matrix26d jacobian;
-    if (!poseResidual(camera, o.measured, frame, o.point, residual, &jacobian)) {
+    if (!shutter.residual(o, residual, jacobian)) {
       equations.cost += behind_cost;
       continue;
     }
@@ -91,7 +132,10 @@ bool solveDamped(const NormalEquations& equations, double damping, Vector6d& ste
 
 // Levenberg's minimisation with the weights renewed at every step. While far from the solution Huber's threshold is
 // wide, so that a prediction several pixels off does not make every observation an outlier.
-bool minimize(const Camera& camera, const PreparedObservations& observations, const PoseOptions& options, Pose& pose) {
+// `shutterAt`: gives the residuals of a camera with a pose.
+template <typename ShutterAt>
+bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observations, const PoseOptions& options,
+              Pose& pose) {
   constexpr int wide_iterations = 3;
   constexpr double wide_factor = 5;
   constexpr double least_damping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
@@ -101,11 +145,11 @@ bool minimize(const Camera& camera, const PreparedObservations& observations, co
 
   double huber = options.huber * wide_factor;
   double damping = least_damping;
-  NormalEquations equations = linearize(camera, pose, observations, huber, norm_behind_camera);
+  NormalEquations equations = linearize(shutterAt(pose), observations, huber, norm_behind_camera);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     if (iteration == wide_iterations) {
       huber = options.huber;
-      equations = linearize(camera, pose, observations, huber, norm_behind_camera);
+      equations = linearize(shutterAt(pose), observations, huber, norm_behind_camera);
     }
     bool accepted = false, small = false;
     while (!accepted && damping <= most_damping) {
@@ -114,7 +158,7 @@ bool minimize(const Camera& camera, const PreparedObservations& observations, co
       // In units of the pose's own standard deviation, so free of scale.
       small = step.dot(equations.information * step) < 1e-8;
       const Pose candidate = retract(pose, step);
-      const NormalEquations at_candidate = linearize(camera, candidate, observations, huber, norm_behind_camera);
+      const NormalEquations at_candidate = linearize(shutterAt(candidate), observations, huber, norm_behind_camera);
       accepted = at_candidate.cost <= equations.cost;
       if (accepted) {
         pose = candidate;
@@ -135,16 +179,16 @@ bool minimize(const Camera& camera, const PreparedObservations& observations, co
 }
 
 // Inliers, rms and covariance at the final pose.
-bool judge(const Camera& camera, const PreparedObservations& observations, const PoseOptions& options, const Pose& pose,
+template <typename Shutter>
+bool judge(const Shutter& shutter, const PreparedObservations& observations, const PoseOptions& options,
            PoseResult& result) {
-  const CameraFrame frame = cameraFrame(pose);
   Matrix6d information = Matrix6d::Zero();
   Eigen::Array2d weighted_squares = Eigen::Array2d::Zero();  // across the edge, along it
   double squares = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     Eigen::Vector2d residual;
     Matrix26d jacobian;
-    if (!poseResidual(camera, observations[i].measured, frame, observations[i].point, residual, &jacobian)) continue;
+    if (!shutter.residual(observations[i], residual, jacobian)) continue;
     result.errors_across[i] = residual.x();
     const double norm = residual.norm();
     if (!(norm <= options.outlier)) continue;
@@ -192,18 +236,24 @@ PoseObservation observeWithDepth(const Camera& camera, const Pose& camera_T_host
 }
 
 PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
-                      const PoseOptions& options, std::pmr::memory_resource* memory) {
+                      const PoseOptions& options, std::pmr::memory_resource* memory, const RowMotion& motion) {
   PoseResult result(memory);
   result.world_T_camera = initial_world_T_camera;
   result.inliers.assign(observations.size(), 0);
   result.errors_across.assign(observations.size(), std::numeric_limits<double>::infinity());
   if (observations.empty() || static_cast<int>(observations.size()) < options.fewest) return result;
-  const PreparedObservations prepared = prepare(observations, memory);
-  Pose pose = initial_world_T_camera;
-  if (!minimize(camera, prepared, options, pose)) return result;
-  if (!judge(camera, prepared, options, pose, result)) return result;
-  result.world_T_camera = pose;
-  result.converged = true;
+  const PreparedObservations prepared = prepare(camera, observations, memory);
+  const auto adjust = [&](const auto& shutterAt) {
+    Pose pose = initial_world_T_camera;
+    result.converged = minimize(shutterAt, prepared, options, pose) && judge(shutterAt(pose), prepared, options, result);
+    if (result.converged) result.world_T_camera = pose;
+  };
+  if (camera.readout_s == 0) {
+    adjust([&](const Pose& pose) { return GlobalShutter(camera, pose); });
+  } else {
+    adjust([&](const Pose& pose) { return RollingShutter(camera, motion, pose); });
+    result.twist = twistOf(motion, result.world_T_camera);
+  }
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include "geometry/camera.h"
 #include "geometry/measurement.h"
 #include "geometry/pose.h"
+#include "geometry/rolling_shutter.h"
 
 namespace edgeslam {
 
@@ -48,6 +49,7 @@ struct PoseResult {
   // False: too few observations or inliers, or the normal equations are singular. The pose is the start's then.
   bool converged = false;
   Pose world_T_camera;
+  Twist twist = Twist::Zero();  // as the pose tells it; 0 for a global shutter
   // Covariance of the right-hand update [translation; rotation]: inverse of the inliers' robust information, scaled up
   // by the residuals where these exceed what the sigmas say, never down. A direction that nothing measures has a large
   // variance.
@@ -58,10 +60,12 @@ struct PoseResult {
   double rms = 0;                          // of the inliers' whitened residual norms
 };
 
-// Observations behind the camera, or with values that are not finite, count as outliers. `memory` serves the result and
+// The pose is that of the middle row; where the camera reads its rows one after another, `motion` ties the other rows'
+// poses to it. Observations behind the camera, or with values that are not finite, count as outliers. `memory` serves the result and
 // what is needed on the way.
 PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
-                      const PoseOptions& options, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+                      const PoseOptions& options, std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
+                      const RowMotion& motion = {});
 
 // Inverse covariance of the right-hand update [translation; rotation] that the observations' standard deviations give a
 // camera there, whatever the residuals are.

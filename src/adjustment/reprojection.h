@@ -8,6 +8,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/pose.h"
+#include "geometry/rolling_shutter.h"
 
 namespace edgeslam {
 
@@ -63,6 +64,31 @@ inline bool poseResidual(const Camera& camera, const WhitenedPixel& measured, co
   by_pose->leftCols<3>() = -by_point;
   by_pose->rightCols<3>().noalias() = by_point * skew(seen);
   return true;
+}
+
+// The same for a camera that moves by `twist` and reads the measured row `seconds` after the middle one; the derivatives
+// are by the middle row's pose and by the twist.
+inline bool rowResidual(const Camera& camera, const WhitenedPixel& measured, const CameraFrame& frame,
+                        const Twist& twist, double seconds, const Eigen::Vector3d& point, Eigen::Vector2d& residual,
+                        Matrix26d& by_pose, Matrix26d& by_twist) {
+  const Eigen::Vector3d in_camera = frame.world_R_camera.transpose() * (point - frame.centre);
+  const Eigen::Vector3d turn = seconds * twist.tail<3>();
+  const Eigen::Matrix3d row_R_camera = rotationExp(turn).toRotationMatrix().transpose();
+  const Eigen::Vector3d seen = row_R_camera * (in_camera - seconds * twist.head<3>());
+  Matrix23d by_point;
+  if (!pointResidual(camera, measured, seen, residual, &by_point)) return false;
+  const Matrix23d by_point_in_camera = by_point * row_R_camera;
+  by_pose.leftCols<3>() = -by_point_in_camera;
+  by_pose.rightCols<3>().noalias() = by_point_in_camera * skew(in_camera);
+  by_twist.leftCols<3>() = -seconds * by_point_in_camera;
+  by_twist.rightCols<3>().noalias() = seconds * (by_point * skew(seen)) * rightJacobian(turn);
+  return true;
+}
+
+// Where a camera is as it reads a row.
+inline CameraFrame rowFrame(const CameraFrame& camera, const CameraFrame& camera_T_row) {
+  return {camera.world_R_camera * camera_T_row.world_R_camera,
+          camera.centre + camera.world_R_camera * camera_T_row.centre};
 }
 
 // From a target camera's centre to the point at `inverse_depth` along the unit `host_bearing` of a host camera: world

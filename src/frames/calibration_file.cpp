@@ -142,7 +142,7 @@ void checkCamera(const Section& section, const Camera& camera, const CameraKeys&
 
 Camera readOwn(const Section& section) {
   std::vector<std::string> known{"width", "height", "fx",         "fy",         "cx",           "cy",   "k1",
-                                 "k2",    "fps",    "board_cols", "board_rows", "board_square", "model"};
+                                 "k2",    "fps",    "board_cols", "board_rows", "board_square", "model", "readout"};
   Camera camera;
   std::vector<std::string> distortion{"k1", "k2", "p1", "p2", "k3"};
   if (section.has("model")) {
@@ -170,6 +170,12 @@ Camera readOwn(const Section& section) {
     }
   }
   if (section.has("fps") && !(section.number("fps") > 0)) section.failAt("fps", "'fps' must be greater than 0");
+  if (section.has("readout")) {
+    camera.readout_s = section.number("readout");
+    if (std::abs(camera.readout_s) > longest_readout_s) {
+      section.failAt("readout", "the readout must be -0.2 to 0.2 seconds, from the first row's reading to the last one's");
+    }
+  }
   checkCamera(section, camera, {"width", "height", "fx", "fy", "cx", "cy", "width"});
   return camera;
 }
@@ -288,6 +294,7 @@ std::string formatCalibrationFile(const Camera& camera) {
   const std::vector<const char*> names = fisheye ? std::vector<const char*>{"k1", "k2", "k3", "k4"}
                                                  : std::vector<const char*>{"k1", "k2", "p1", "p2", "k3"};
   for (std::size_t i = 0; i < names.size(); ++i) append(names[i], camera.distortion[i]);
+  if (camera.readout_s != 0) append("readout", camera.readout_s);
   return text;
 }
 

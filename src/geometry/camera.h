@@ -19,11 +19,13 @@ struct Camera {
   int height = 0;                                   // [px]
   double fx = 0, fy = 0, cx = 0, cy = 0;            // [px]
   std::array<double, 5> distortion{0, 0, 0, 0, 0};  // radial-tangential: k1 k2 p1 p2 k3; Kannala-Brandt: k1 k2 k3 k4 0
+  // From the first row's reading to the last one's [s]. 0: a global shutter; negative: rows are read from below.
+  double readout_s = 0;
 };
 
 inline bool operator==(const Camera& a, const Camera& b) {
   return a.model == b.model && a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy &&
-         a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion;
+         a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion && a.readout_s == b.readout_s;
 }
 
 // Pixel of a point in the camera frame. The 2x3 derivative d pixel / d point is written where `jacobian` is given.

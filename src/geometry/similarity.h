@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/pose.h"
+#include "geometry/rolling_shutter.h"
 
 namespace edgeslam {
 
@@ -26,6 +26,13 @@ struct Similarity {
 // A camera that a similarity moves along with its surroundings.
 inline Pose moved(const Similarity& new_S_old, const Pose& old_T_camera) {
   return {(new_S_old.rotation * old_T_camera.rotation).normalized(), new_S_old * old_T_camera.translation};
+}
+
+// And its motion: seen from itself it only becomes faster.
+inline Twist moved(const Similarity& new_S_old, const Twist& twist) {
+  Twist faster = twist;
+  faster.head<3>() *= new_S_old.scale;
+  return faster;
 }
 
 // Least-squares similarity with to ~ scale * R * from + t. `with_scale` false keeps the scale at 1. Needs at least 3

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/measurement.h"
+#include "geometry/rolling_shutter.h"
 #include "geometry/uncertainty.h"
 #include "image/pyramid.h"
 
@@ -26,7 +27,7 @@ struct FrameImages {
 struct PointObservation {
   PointId point = 0;
   Measurement measurement;
-  Eigen::Vector3d bearing = Eigen::Vector3d::UnitZ();  // unit, camera frame, of the measurement's pixel
+  Eigen::Vector3d bearing = Eigen::Vector3d::UnitZ();  // unit, of the measurement's pixel, middle row's camera frame
   bool corner = false;
   int chain = -1;  // of the edge on which it was chosen, in the frame where it was chosen
   int order = 0;   // place along that chain
@@ -46,6 +47,7 @@ struct TrackedFrame {
   std::int64_t frame_index = 0;
   std::int64_t time_ns = 0;
   Pose world_T_camera;  // as tracking estimated it; of a lost frame without meaning
+  Twist twist = Twist::Zero();  // of the camera as its rows were read
   std::vector<PointObservation> observations;
   std::shared_ptr<const FrameImages> images;  // null for FrameKind::start
   KeyframeId keyframe =
@@ -61,6 +63,7 @@ struct Keyframe {
   std::int64_t frame_index = 0;
   std::int64_t time_ns = 0;
   Pose world_T_camera;
+  Twist twist = Twist::Zero();                 // of the camera as its rows were read
   std::vector<PointObservation> observations;  // sorted by point
   std::shared_ptr<const FrameImages> images;   // null for a keyframe that no point is hosted in
   std::string reason;

@@ -4,6 +4,18 @@
 
 namespace edgeslam {
 
+void setPlace(const Eigen::Vector3d& ray_origin, const Eigen::Vector3d& direction, double inverse_depth, double sigma,
+              MapPoint& point) {
+  point.host_bearing = direction;
+  point.inverse_depth = inverse_depth;
+  point.inverse_depth_sigma = sigma;
+  if (ray_origin.isZero(0)) return;
+  const Eigen::Vector3d place = ray_origin + direction / inverse_depth;
+  point.host_bearing = place.normalized();
+  point.inverse_depth = 1 / place.norm();
+  point.inverse_depth_sigma = sigma / inverse_depth * point.inverse_depth;
+}
+
 const PointObservation* findObservation(const Keyframe& keyframe, PointId point) {
   const auto found = std::lower_bound(keyframe.observations.begin(), keyframe.observations.end(), point,
                                       [](const PointObservation& o, PointId id) { return o.point < id; });

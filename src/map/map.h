@@ -32,6 +32,11 @@ inline Eigen::Vector3d worldPosition(const Map& map, const MapPoint& point) {
   return map.keyframes[point.host].world_T_camera * (point.host_bearing / point.inverse_depth);
 }
 
+// Gives a point its place on a ray of its host's camera frame, from where the ray begins: the depth is kept from the
+// camera's centre.
+void setPlace(const Eigen::Vector3d& ray_origin, const Eigen::Vector3d& direction, double inverse_depth, double sigma,
+              MapPoint& point);
+
 // The observation of a point in a keyframe, or null.
 const PointObservation* findObservation(const Keyframe& keyframe, PointId point);
 

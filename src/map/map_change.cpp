@@ -67,7 +67,10 @@ void addView(const MapChange::View& view, Map& map) {
 MapChange changeOf(const Map& before, const Map& after, const std::optional<WorldJoin>& join) {
   MapChange change;
   if (before.keyframes.empty()) return change;
-  for (const Keyframe& keyframe : after.keyframes) change.world_T_camera[keyframe.id] = keyframe.world_T_camera;
+  for (const Keyframe& keyframe : after.keyframes) {
+    change.world_T_camera[keyframe.id] = keyframe.world_T_camera;
+    change.twists[keyframe.id] = keyframe.twist;
+  }
   for (const auto& [id, point] : before.points) {
     const auto found = after.points.find(id);
     if (found == after.points.end()) {
@@ -103,8 +106,10 @@ void applyChange(const MapChange& change, Map& map) {
     const auto corrected = change.world_T_camera.find(keyframe.id);
     if (corrected != change.world_T_camera.end()) {
       keyframe.world_T_camera = corrected->second;
+      keyframe.twist = change.twists.at(keyframe.id);
     } else if (keyframe.world == change.newer_world) {
       keyframe.world_T_camera = moved(move, keyframe.world_T_camera);
+      keyframe.twist = moved(move, keyframe.twist);
     }
     if (change.join && keyframe.world == change.join->from) keyframe.world = change.join->to;
   }

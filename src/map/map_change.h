@@ -24,6 +24,7 @@ struct MapChange {
     PointObservation observation;
   };
   std::map<KeyframeId, Pose> world_T_camera;  // of every keyframe of the copy
+  std::map<KeyframeId, Twist> twists;         // likewise
   std::map<PointId, PointDepth> depths;       // of every point that is left
   std::vector<PointId> erased_points;
   std::vector<std::pair<PointId, KeyframeId>> erased_views;  // no longer in `seen_in`

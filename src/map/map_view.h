@@ -27,6 +27,7 @@ struct ViewKeyframe {
   Pose world_T_camera;
   std::shared_ptr<const FrameImages> images;  // null where no point needs it
   Matrix7d uncertainty = Matrix7d::Zero();    // against the first keyframe
+  Twist twist = Twist::Zero();                // of the camera as its rows were read
 };
 
 struct MapView {

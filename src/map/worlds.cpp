@@ -74,6 +74,7 @@ void joinWorlds(const WorldJoin& join, Map& map) {
   for (Keyframe& keyframe : map.keyframes) {
     if (keyframe.world != join.from) continue;
     keyframe.world_T_camera = moved(join.to_S_from, keyframe.world_T_camera);
+    keyframe.twist = moved(join.to_S_from, keyframe.twist);
     keyframe.world = join.to;
   }
 }

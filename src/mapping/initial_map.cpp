@@ -12,6 +12,7 @@ void addKeyframe(const TrackedFrame& frame, KeyframeId id, const Pose& pose, con
   keyframe.frame_index = frame.frame_index;
   keyframe.time_ns = frame.time_ns;
   keyframe.world_T_camera = pose;
+  keyframe.twist = frame.twist;
   keyframe.observations = frame.observations;
   keyframe.images = frame.images;
   keyframe.reason = reason;
@@ -20,7 +21,7 @@ void addKeyframe(const TrackedFrame& frame, KeyframeId id, const Pose& pose, con
 
 }  // namespace
 
-Map initialMap(const InitialFrames& frames, const InitialStructure& structure, double largest_depth_sigma) {
+Map initialMap(const Camera& camera, const InitialFrames& frames, const InitialStructure& structure, double largest_depth_sigma) {
   Map map;
   const KeyframeId first_id = frames.first.keyframe;
   KeyframeId id = first_id;
@@ -34,9 +35,8 @@ Map initialMap(const InitialFrames& frames, const InitialStructure& structure, d
     MapPoint point;
     point.id = first.point;
     point.host = point.chain_keyframe = first_id;
-    point.host_bearing = first.bearing;
-    point.inverse_depth = structure.inverse_depths[i];
-    point.inverse_depth_sigma = structure.depth_sigmas[i];
+    setPlace(rayOrigin(camera, frames.first, first), first.bearing, structure.inverse_depths[i],
+             structure.depth_sigmas[i], point);
     point.corner = first.corner;
     point.chain = first.chain;
     point.order = first.order;

@@ -12,13 +12,16 @@ namespace edgeslam {
 namespace {
 
 // Camera 0 is the first frame, camera k + 1 the start's k-th; a point has the index that it has in the first frame.
-BundleProblem bundleProblem(const InitialFrames& frames, const InitialStart& start, double prior_sigma) {
+BundleProblem bundleProblem(const Camera& camera, const InitialFrames& frames, const InitialStart& start, double prior_sigma) {
   BundleProblem problem;
-  problem.cameras.push_back({Pose(), true});
-  for (const Pose& pose : start.first_T_camera) problem.cameras.push_back({pose, false});
+  problem.cameras.push_back({Pose(), true, frames.first.twist});
+  for (std::size_t k = 0; k < start.frames.size(); ++k) {
+    problem.cameras.push_back({start.first_T_camera[k], false, frames.since[start.frames[k]].twist});
+  }
   for (std::size_t i = 0; i < frames.first.observations.size(); ++i) {
     BundlePoint point;
     point.host_bearing = frames.first.observations[i].bearing;
+    point.host_origin = rayOrigin(camera, frames.first, frames.first.observations[i]);
     point.inverse_depth = start.inverse_depths[i] > 0 ? start.inverse_depths[i] : 1.0;
     point.prior_sigma = prior_sigma;
     problem.points.push_back(point);
@@ -49,9 +52,11 @@ double boundedError(const Camera& camera, const BundleProblem& adjusted,
   double sum = 0;
   for (const BundleObservation& observation : observations) {
     const BundlePoint& point = adjusted.points[static_cast<std::size_t>(observation.point)];
-    const Pose camera_T_first = adjusted.cameras[static_cast<std::size_t>(observation.camera)].world_T_camera.inverse();
+    const BundleCamera& seen_by = adjusted.cameras[static_cast<std::size_t>(observation.camera)];
+    const Pose camera_T_first =
+        worldTRow(camera, {seen_by.world_T_camera, seen_by.twist}, observation.measurement.pixel.y()).inverse();
     const Eigen::Vector3d seen =
-        camera_T_first.rotation * point.host_bearing + point.inverse_depth * camera_T_first.translation;
+        camera_T_first.rotation * point.host_bearing + point.inverse_depth * (camera_T_first * point.host_origin);
     if (!(seen.z() > 0)) {
       sum += bound;
       continue;
@@ -68,7 +73,7 @@ std::optional<InitialStructure> adjustInitialStructure(const Camera& camera, con
                                                        InitialStart start, const InitialisationOptions& options) {
   assert(start.first_T_camera.size() == start.frames.size());
   assert(start.inverse_depths.size() == frames.first.observations.size());
-  BundleProblem problem = bundleProblem(frames, start, options.prior_sigma);
+  BundleProblem problem = bundleProblem(camera, frames, start, options.prior_sigma);
   BundleResult result = adjustBundle(camera, problem, options.bundle);
   if (!result.usable) return std::nullopt;
 
@@ -92,6 +97,10 @@ std::optional<InitialStructure> adjustInitialStructure(const Camera& camera, con
   return structure;
 }
 
+Eigen::Vector3d rayOrigin(const Camera& camera, const TrackedFrame& first, const PointObservation& point) {
+  return rowPose(camera, first.twist, point.measurement.pixel.y()).translation;
+}
+
 std::optional<Pose> locateAgainst(const Camera& camera, const TrackedFrame& first,
                                   const std::vector<double>& inverse_depths, const TrackedFrame& frame,
                                   const Pose& near) {
@@ -100,11 +109,15 @@ std::optional<Pose> locateAgainst(const Camera& camera, const TrackedFrame& firs
   forEachCommon(first, frame, [&](std::size_t i, std::size_t j) {
     if (inverse_depths[i] <= 0) return;
     PoseObservation observation;
-    observation.point = first.observations[i].bearing / inverse_depths[i];
+    observation.point =
+        rayOrigin(camera, first, first.observations[i]) + first.observations[i].bearing / inverse_depths[i];
     observation.measurement = frame.observations[j].measurement;
     observations.push_back(observation);
   });
-  const PoseResult result = adjustPose(camera, near, observations, PoseOptions());
+  RowMotion motion;
+  motion.before = frame.twist;
+  const PoseResult result =
+      adjustPose(camera, near, observations, PoseOptions(), std::pmr::get_default_resource(), motion);
   if (!result.converged) return std::nullopt;
   return result.world_T_camera;
 }

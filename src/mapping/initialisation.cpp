@@ -94,7 +94,7 @@ void Initialisation::writeProvisional(MapView& view) const {
   }
 }
 
-Map Initialisation::map() const { return initialMap(frames_, accepted_, options_.largest_depth_sigma); }
+Map Initialisation::map() const { return initialMap(camera_, frames_, accepted_, options_.largest_depth_sigma); }
 
 std::optional<Pose> Initialisation::locate(const TrackedFrame& frame, const Pose& near) const {
   return locateAgainst(camera_, frames_.first, accepted_.inverse_depths, frame, near);

@@ -103,7 +103,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   std::vector<KeyframeId> keyframe_of;
   const auto addCamera = [&](KeyframeId keyframe, bool is_fixed) {
     camera_of[static_cast<std::size_t>(keyframe)] = static_cast<int>(problem.cameras.size());
-    problem.cameras.push_back({map.keyframes[keyframe].world_T_camera, is_fixed});
+    problem.cameras.push_back({map.keyframes[keyframe].world_T_camera, is_fixed, map.keyframes[keyframe].twist});
     keyframe_of.push_back(keyframe);
   };
   std::vector<KeyframeId> ordered_free = free;
@@ -142,7 +142,9 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   if (!result.usable) return false;
 
   for (std::size_t k = 0; k < problem.cameras.size(); ++k) {
-    if (!problem.cameras[k].fixed) map.keyframes[keyframe_of[k]].world_T_camera = problem.cameras[k].world_T_camera;
+    Keyframe& keyframe = map.keyframes[keyframe_of[k]];
+    if (!problem.cameras[k].fixed) keyframe.world_T_camera = problem.cameras[k].world_T_camera;
+    keyframe.twist = problem.cameras[k].twist;
   }
   for (std::size_t i = 0; i < used_points.size(); ++i) {
     MapPoint& point = map.points.at(used_points[i]);

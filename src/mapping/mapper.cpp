@@ -90,13 +90,14 @@ void Mapper::goBackTo(KeyframeId keyframe) {
 // What was tracked in a world that was joined to another meanwhile is there now.
 WorldPose Mapper::inWorldOfToday(WorldPose pose) const {
   for (auto join = joins_.find(pose.world); join != joins_.end(); join = joins_.find(pose.world)) {
-    pose = {join->second.to, moved(join->second.to_S_from, pose.world_T_camera)};
+    const Similarity& move = join->second.to_S_from;
+    pose = {join->second.to, moved(move, pose.world_T_camera), moved(move, pose.twist)};
   }
   return pose;
 }
 
 bool Mapper::addKeyframe(const TrackedFrame& frame) {
-  const auto [world, world_T_camera] = inWorldOfToday({frame.world, frame.world_T_camera});
+  const auto [world, world_T_camera, twist] = inWorldOfToday({frame.world, frame.world_T_camera, frame.twist});
   if (!initialised_ || world_ != world) {
     makeRoomFor(frame.keyframe);
     const KeyframeId latest = latestKeyframeOf(map_, world);
@@ -109,6 +110,7 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   keyframe.frame_index = frame.frame_index;
   keyframe.time_ns = frame.time_ns;
   keyframe.world_T_camera = world_T_camera;
+  keyframe.twist = twist;
   keyframe.observations = frame.observations;
   keyframe.images = frame.images;
   keyframe.reason = frame.reason;

@@ -34,6 +34,7 @@ struct MapperOptions {
 struct WorldPose {
   int world = 0;
   Pose world_T_camera;
+  Twist twist = Twist::Zero();
 };
 
 // Of a frame before its map stood: in its world.

@@ -12,6 +12,11 @@ namespace {
 
 const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
+// Where a keyframe's camera was as it read the row of an observation.
+Pose poseInRow(const Camera& camera, const Keyframe& keyframe, const PointObservation& seen) {
+  return worldTRow(camera, {keyframe.world_T_camera, keyframe.twist}, seen.measurement.pixel.y());
+}
+
 // P7, for points that are known in both directions; where a point may slide along its edge the epipolar lines of the
 // outer views need not cross at the same point of the edge, and the triangulation's own error is the check.
 bool passesThreeViews(const Camera& camera, const Map& map, PointId id, const std::vector<KeyframeId>& views,
@@ -24,8 +29,8 @@ bool passesThreeViews(const Camera& camera, const Map& map, PointId id, const st
   const PointObservation* b = findObservation(middle, id);
   const PointObservation* c = findObservation(last, id);
   if (!a->corner || !b->corner || !c->corner) return true;
-  return threeViewError(camera, first.world_T_camera, middle.world_T_camera, last.world_T_camera, a->measurement.pixel,
-                        b->measurement, c->measurement.pixel) < limit;
+  return threeViewError(camera, poseInRow(camera, first, *a), poseInRow(camera, middle, *b), poseInRow(camera, last, *c),
+                        a->measurement.pixel, b->measurement, c->measurement.pixel) < limit;
 }
 
 }  // namespace
@@ -60,10 +65,14 @@ int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map,
     }
     const Keyframe& host = keyframeOf(map, views.front());
     const PointObservation& in_host = *findObservation(host, id);
+    // A host that moved as it read the point's row saw it from elsewhere than its centre.
+    const Eigen::Vector3d ray_origin = rowPose(camera, host.twist, in_host.measurement.pixel.y()).translation;
+    const Pose world_T_ray{host.world_T_camera.rotation, host.world_T_camera * ray_origin};
     std::vector<TriangulationView> others;
     for (std::size_t k = 1; k < views.size(); ++k) {
       const Keyframe& view = keyframeOf(map, views[k]);
-      others.push_back({view.world_T_camera.inverse() * host.world_T_camera, findObservation(view, id)->measurement});
+      const PointObservation& seen = *findObservation(view, id);
+      others.push_back({poseInRow(camera, view, seen).inverse() * world_T_ray, seen.measurement});
     }
     const TriangulationResult depth = triangulate(camera, in_host.bearing, others);
     const bool good =
@@ -76,9 +85,7 @@ int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map,
     MapPoint point;
     point.id = id;
     point.host = host.id;
-    point.host_bearing = in_host.bearing;
-    point.inverse_depth = depth.inverse_depth;
-    point.inverse_depth_sigma = depth.sigma;
+    setPlace(ray_origin, in_host.bearing, depth.inverse_depth, depth.sigma, point);
     point.corner = in_host.corner;
     point.chain_keyframe = host.id;
     point.chain = in_host.chain;

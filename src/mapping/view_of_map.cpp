@@ -69,7 +69,7 @@ MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options)
   view.world = map.keyframes[centre].world;
   for (const Keyframe& keyframe : map.keyframes) {
     if (keyframe.world != view.world) continue;
-    view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr, keyframe.uncertainty});
+    view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr, keyframe.uncertainty, keyframe.twist});
   }
   const std::vector<char> in_view = keyframesInView(map, centre, options);
   for (const auto& [id, point] : map.points) {

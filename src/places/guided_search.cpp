@@ -194,7 +194,7 @@ SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, co
     const Measurement& m = seen->measurement;
     result.push_back({id, position, nearest->images.get(), nearest->world_T_camera, m.pixel.cast<float>(),
                       m.normal.cast<float>(), seen->corner, static_cast<float>(m.sigma_normal),
-                      static_cast<float>(m.sigma_tangent)});
+                      static_cast<float>(m.sigma_tangent), nearest->twist});
     keyframes.push_back(nearest->id);
   }
   return result;

@@ -87,7 +87,10 @@ void moveAlong(const std::map<KeyframeId, Similarity>& moves, int world, Map& ma
     return after == moves.begin() ? after->second : std::prev(after)->second;
   };
   for (Keyframe& keyframe : map.keyframes) {
-    if (keyframe.world == world) keyframe.world_T_camera = moved(moveOf(keyframe.id), keyframe.world_T_camera);
+    if (keyframe.world != world) continue;
+    const Similarity& move = moveOf(keyframe.id);
+    keyframe.world_T_camera = moved(move, keyframe.world_T_camera);
+    keyframe.twist = moved(move, keyframe.twist);
   }
   for (auto& [id, point] : map.points) {
     if (map.keyframes[point.host].world != world) continue;

@@ -16,7 +16,7 @@ struct EdgeLockOptions {
   double longest_move = 4.0;  // [px]
 };
 
-void lockAlongEdges(const Camera& camera, const MapView& view, const Pose& world_T_camera,
+void lockAlongEdges(const Camera& camera, const MapView& view, const MovingCamera& moving,
                     const EdgeLockOptions& options, std::vector<Track>& tracks);
 
 }  // namespace edgeslam

@@ -16,6 +16,7 @@ struct FollowedFrame {
   std::shared_ptr<EdgeMap> edges;
   std::vector<Track> tracks;  // ascending ids
   Pose world_T_camera;
+  Twist twist = Twist::Zero();             // of the camera as its rows were read; 0 where they are read at once
   Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation], in the map as it is
   int inlier_count = 0;                    // map points that agree with the pose
   double outlier_share = 0;                // of the map points in view

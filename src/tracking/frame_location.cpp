@@ -25,12 +25,14 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   clock.finished(Stage::flow);
 
   // P16, once more after the points were refined against their keyframes
-  const FramePose first = estimatePose(camera_, view, frame.tracks, predicted, options_.pose, &memory);
+  const FramePose first = estimatePose(camera_, view, frame.tracks, predicted, options_.pose, &memory, prior.motion);
   if (!first.result.converged) return false;
   clock.finished(Stage::pose);
-  refineTracks(camera_, view, to, first.result.world_T_camera, scene_depth, options_.refinement, frame.tracks);
+  refineTracks(camera_, view, to, {first.result.world_T_camera, first.result.twist}, scene_depth, options_.refinement,
+               frame.tracks);
   clock.finished(Stage::refinement);
-  const FramePose pose = estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory);
+  const FramePose pose = estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory,
+                                      prior.motion);
   // What the points say of the noise they say of a pose that is refused as well: else it could not rise when it
   // matters.
   if (view.initialised) frame.noise = noiseEvidence(pose.result.errors_across, &memory);
@@ -40,12 +42,13 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   if (view.initialised && !isBelieved(pose, context, options_.acceptance)) return false;
 
   frame.world_T_camera = pose.result.world_T_camera;
+  frame.twist = pose.result.twist;
   frame.covariance = pose.result.covariance;
   frame.inlier_count = pose.result.inlier_count;
   const auto in_view = static_cast<double>(pose.track_of_observation.size());
   frame.outlier_share = in_view > 0 ? 1 - frame.inlier_count / in_view : 0;
   countOutliers(pose, view.initialised, frame.tracks);
-  lockAlongEdges(camera_, view, frame.world_T_camera, options_.edge_lock, frame.tracks);
+  lockAlongEdges(camera_, view, {frame.world_T_camera, frame.twist}, options_.edge_lock, frame.tracks);
   for (Track& track : frame.tracks) updateAccuracy(to.pyramid.levels[0], prior.accuracy, track);
   clock.finished(Stage::pose);
   return true;

@@ -34,6 +34,7 @@ struct LocationPrior {
   Pose world_T_predicted;         // from motion alone
   bool regains = false;           // the frame before was blurred or lost
   const PointAccuracy& accuracy;  // of what is measured in this frame
+  RowMotion motion;               // tells how the camera moves while its rows are read
 };
 
 class FrameLocation {

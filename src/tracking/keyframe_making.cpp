@@ -40,6 +40,7 @@ void KeyframeMaking::choosePointsOfFirst(FollowedFrame& frame, const PointAccura
   next_keyframe_ = first_of_world_ + 1;
   frame.tracks.clear();
   frame.world_T_camera = Pose();
+  frame.twist.setZero();
   frame.inlier_count = 0;
   choosePointsIn(frame, first_of_world_, accuracy);
 }

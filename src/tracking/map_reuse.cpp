@@ -13,6 +13,7 @@ SearchPoint searchPointOf(const MapView& view, const ViewPoint& point) {
   search.position = worldPosition(view, point);
   search.source_images = source.images.get();
   search.world_T_source = source.world_T_camera;
+  search.source_twist = source.twist;
   search.source_pixel = point.source_measurement.pixel.cast<float>();
   search.source_normal = point.source_measurement.normal.cast<float>();
   search.corner = point.corner;
@@ -29,7 +30,7 @@ bool nearTrack(const std::vector<Track>& tracks, const Eigen::Vector2f& pixel, f
 }  // namespace
 
 void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages& images, const EdgeMap& edges,
-                    const Pose& world_T_camera, std::size_t most, const MapReuseOptions& options,
+                    const MovingCamera& moving, std::size_t most, const MapReuseOptions& options,
                     std::vector<Track>& tracks, std::pmr::memory_resource* memory) {
   if (!options.enabled) return;
   SearchPoints points(memory);
@@ -40,14 +41,14 @@ void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages
     const bool followed = t < tracks.size() && tracks[t].id == point.id;
     if (!followed && point.source >= 0) points.push_back(searchPointOf(view, point));
   }
-  const Pose camera_T_world = world_T_camera.inverse();
+  const Pose camera_T_world = moving.world_T_camera.inverse();
   const auto by_id = [](const Track& a, const Track& b) { return a.id < b.id; };
   for (const FoundPoint& found :
-       searchMapPoints(camera, points, images, edges, world_T_camera, options.search, memory)) {
+       searchMapPoints(camera, points, images, edges, moving, options.search, memory)) {
     if (tracks.size() >= most) break;
     const SearchPoint& point = points[found.index];
     const Measurement measurement = measurementOf(point, found);
-    const Eigen::Vector2d error = project(camera, camera_T_world * point.position) - measurement.pixel;
+    const Eigen::Vector2d error = projectToRow(camera, moving.twist, camera_T_world * point.position) - measurement.pixel;
     if (std::abs(measurement.normal.dot(error)) > options.outlier_px) continue;
     if (nearTrack(tracks, found.pixel, static_cast<float>(options.spacing))) continue;
     const ViewPoint& view_point = *findPoint(view, point.id);

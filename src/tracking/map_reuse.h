@@ -20,7 +20,7 @@ struct MapReuseOptions {
 
 // Appends the points found to the tracks, which stay sorted by id; at most until there are `most` tracks.
 void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages& images, const EdgeMap& edges,
-                    const Pose& world_T_camera, std::size_t most, const MapReuseOptions& options,
+                    const MovingCamera& moving, std::size_t most, const MapReuseOptions& options,
                     std::vector<Track>& tracks, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 }  // namespace edgeslam

@@ -85,8 +85,9 @@ std::optional<FoundPoint> findPatch(const SearchPoint& point, const VisiblePoint
 
 }  // namespace
 
-VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, const Pose& world_T_camera,
+VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, const MovingCamera& moving,
                             const MapSearchOptions& options, std::pmr::memory_resource* memory) {
+  const Pose& world_T_camera = moving.world_T_camera;
   const Pose camera_T_world = world_T_camera.inverse();
   const double least_cosine = std::cos(radians(options.largest_angle_deg));
   const double largest_area = options.largest_scale * options.largest_scale;
@@ -100,10 +101,11 @@ VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, co
     if (!(from_source.dot(from_camera) > least_cosine * from_source.norm() * from_camera.norm())) continue;
     const Eigen::Vector3d in_camera = camera_T_world * point.position;
     if (!(in_camera.z() > 0.1 * in_camera.norm())) continue;
-    const Eigen::Vector2d pixel = project(camera, in_camera);
+    const Eigen::Vector2d pixel = projectToRow(camera, moving.twist, in_camera);
     if (!insideImage(camera, pixel, options.border)) continue;
     const Eigen::Matrix2f warp =
-        keyframeWarp(camera, camera_T_world * point.world_T_source, point.source_pixel, from_source.norm());
+        keyframeWarp(camera, {camera_T_world * point.world_T_source, point.source_twist, moving.twist},
+                     point.source_pixel, from_source.norm());
     const double area = warp.determinant();
     if (!(area * largest_area > 1 && area < largest_area)) continue;
     // A straight line's normal is a covector: n_source . (warp offset) = (warp^T n_source) . offset.
@@ -126,9 +128,9 @@ FoundPoints findVisiblePoints(const SearchPoints& points, const VisiblePoints& v
 }
 
 FoundPoints searchMapPoints(const Camera& camera, const SearchPoints& points, const FrameImages& current,
-                            const EdgeMap& edges, const Pose& world_T_camera, const MapSearchOptions& options,
+                            const EdgeMap& edges, const MovingCamera& moving, const MapSearchOptions& options,
                             std::pmr::memory_resource* memory) {
-  return findVisiblePoints(points, visiblePoints(camera, points, world_T_camera, options, memory), current, edges,
+  return findVisiblePoints(points, visiblePoints(camera, points, moving, options, memory), current, edges,
                            options, memory);
 }
 

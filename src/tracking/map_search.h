@@ -24,6 +24,7 @@ struct SearchPoint {
   bool corner = false;
   float sigma_normal = 0.5f;  // in the keyframe [px]
   float sigma_tangent = 1000;
+  Twist source_twist = Twist::Zero();  // of the keyframe as its rows were read
 };
 
 using SearchPoints = std::pmr::vector<SearchPoint>;
@@ -63,7 +64,7 @@ using FoundPoints = std::pmr::vector<FoundPoint>;
 
 // The points that project inside the image, are seen from about the direction and the distance of their keyframe.
 // Whether something stands before them is not known.
-VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, const Pose& world_T_camera,
+VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, const MovingCamera& moving,
                             const MapSearchOptions& options,
                             std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
@@ -72,9 +73,9 @@ FoundPoints findVisiblePoints(const SearchPoints& points, const VisiblePoints& v
                               const EdgeMap& edges, const MapSearchOptions& options,
                               std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-// Both in one. `world_T_camera` may be wrong by what moves a point by the search radius in the image.
+// Both in one. Its pose may be wrong by what moves a point by the search radius in the image.
 FoundPoints searchMapPoints(const Camera& camera, const SearchPoints& points, const FrameImages& current,
-                            const EdgeMap& edges, const Pose& world_T_camera, const MapSearchOptions& options,
+                            const EdgeMap& edges, const MovingCamera& moving, const MapSearchOptions& options,
                             std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // What a found point measures: the accuracy that its keyframe's patch had, carried over.

@@ -14,6 +14,15 @@ void MotionModel::forget() {
   interval_ns_ = 0;
 }
 
+RowMotion MotionModel::whileRowsAreRead(const TimedCamera& last, std::int64_t time_ns, bool map_stands) const {
+  RowMotion motion;
+  motion.world_T_before = last.world_T_camera;
+  motion.seconds = static_cast<double>(time_ns - last.time_ns) * 1e-9;
+  motion.is_known_from_before = map_stands && interval_ns_ > 0;
+  if (interval_ns_ > 0) motion.before = twistBetween(Pose(), before_T_now_, static_cast<double>(interval_ns_) * 1e-9);
+  return motion;
+}
+
 Pose MotionModel::predict(const TimedCamera& last, std::int64_t time_ns) const {
   if (interval_ns_ <= 0) return last.world_T_camera;
   constexpr double most_intervals = 3;

@@ -12,7 +12,7 @@ namespace {
 enum class Refinement { refined, unchanged, lost };
 
 Refinement refine(const Camera& camera, const MapView& view, const FrameImages& images, const Pose& camera_T_world,
-                  double scene_depth, const RefinementOptions& options, AscendingPoints& points, Track& track) {
+                  const Twist& twist, double scene_depth, const RefinementOptions& options, AscendingPoints& points, Track& track) {
   const ViewKeyframe* keyframe = view.keyframes.find(track.keyframe);
   if (!track.keyframe_images || !keyframe) {
     return Refinement::unchanged;
@@ -22,7 +22,8 @@ Refinement refine(const Camera& camera, const MapView& view, const FrameImages& 
   if (const ViewPoint* point = points.find(track.id)) {
     depth = (worldPosition(view, *point) - world_T_keyframe.translation).norm();
   }
-  const Eigen::Matrix2f warp = keyframeWarp(camera, camera_T_world * world_T_keyframe, track.keyframe_pixel, depth);
+  const Eigen::Matrix2f warp =
+      keyframeWarp(camera, {camera_T_world * world_T_keyframe, keyframe->twist, twist}, track.keyframe_pixel, depth);
   const float size = warp.determinant();
   if (!(size > 0.2f && size < 5.0f)) return Refinement::lost;
 
@@ -43,7 +44,7 @@ Refinement refine(const Camera& camera, const MapView& view, const FrameImages& 
 
 }  // namespace
 
-Eigen::Matrix2f keyframeWarp(const Camera& camera, const Pose& camera_T_keyframe, const Eigen::Vector2f& keyframe_pixel,
+Eigen::Matrix2f keyframeWarp(const Camera& camera, const KeyframeToCamera& motion, const Eigen::Vector2f& keyframe_pixel,
                              double depth) {
   constexpr double step = 4;  // [px]
   const Eigen::Vector2d centre = keyframe_pixel.cast<double>(), right(step, 0), down(0, step);
@@ -52,7 +53,8 @@ Eigen::Matrix2f keyframeWarp(const Camera& camera, const Pose& camera_T_keyframe
   bearingsOf(camera, around.data(), around.size(), bearings.data());
   std::array<Eigen::Vector2d, 4> there;
   for (std::size_t i = 0; i < there.size(); ++i) {
-    there[i] = project(camera, camera_T_keyframe * Eigen::Vector3d(bearings[i] * depth));
+    const Ray ray = rayOfRow(camera, motion.keyframe_twist, around[i].y(), bearings[i]);
+    there[i] = projectToRow(camera, motion.camera_twist, motion.camera_T_keyframe * (ray.origin + ray.direction * depth));
   }
   Eigen::Matrix2d camera_by_keyframe;
   camera_by_keyframe.col(0) = (there[0] - there[1]) / (2 * step);
@@ -60,14 +62,14 @@ Eigen::Matrix2f keyframeWarp(const Camera& camera, const Pose& camera_T_keyframe
   return camera_by_keyframe.inverse().cast<float>();
 }
 
-void refineTracks(const Camera& camera, const MapView& view, const FrameImages& images, const Pose& world_T_camera,
+void refineTracks(const Camera& camera, const MapView& view, const FrameImages& images, const MovingCamera& moving,
                   double scene_depth, const RefinementOptions& options, std::vector<Track>& tracks) {
   if (!options.enabled) return;
-  const Pose camera_T_world = world_T_camera.inverse();
+  const Pose camera_T_world = moving.world_T_camera.inverse();
   AscendingPoints points(view);
   std::size_t kept = 0;
   for (Track& track : tracks) {
-    if (refine(camera, view, images, camera_T_world, scene_depth, options, points, track) == Refinement::lost) continue;
+    if (refine(camera, view, images, camera_T_world, moving.twist, scene_depth, options, points, track) == Refinement::lost) continue;
     if (&tracks[kept] != &track) tracks[kept] = std::move(track);
     ++kept;
   }

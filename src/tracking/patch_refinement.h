@@ -20,13 +20,22 @@ struct RefinementOptions {
   double largest_move = 2.0;       // a refinement that moves the point farther across its edge is not believed [px]
 };
 
+// From a keyframe to a frame: the pose, and how both cameras moved as they were read.
+struct KeyframeToCamera {
+  KeyframeToCamera(const Pose& pose, const Twist& of_keyframe = Twist::Zero(), const Twist& of_camera = Twist::Zero())
+      : camera_T_keyframe(pose), keyframe_twist(of_keyframe), camera_twist(of_camera) {}
+
+  Pose camera_T_keyframe;
+  Twist keyframe_twist, camera_twist;
+};
+
 // 2x2: takes offsets in the current image to offsets in the keyframe's, for a small patch that faces the keyframe at
 // the given distance from it.
-Eigen::Matrix2f keyframeWarp(const Camera& camera, const Pose& camera_T_keyframe, const Eigen::Vector2f& keyframe_pixel,
-                             double depth);
+Eigen::Matrix2f keyframeWarp(const Camera& camera, const KeyframeToCamera& motion,
+                             const Eigen::Vector2f& keyframe_pixel, double depth);
 
-// Refines the tracks in place and removes those that fail. `world_T_camera` is the frame's pose.
-void refineTracks(const Camera& camera, const MapView& view, const FrameImages& images, const Pose& world_T_camera,
+// Refines the tracks in place and removes those that fail.
+void refineTracks(const Camera& camera, const MapView& view, const FrameImages& images, const MovingCamera& moving,
                   double scene_depth, const RefinementOptions& options, std::vector<Track>& tracks);
 
 }  // namespace edgeslam

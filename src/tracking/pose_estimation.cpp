@@ -49,7 +49,9 @@ void addUnmapped(const Camera& camera, const MapView& view, const std::vector<Tr
     if (!track.keyframe_images || !view.keyframes.contains(track.keyframe) || points.find(track.id)) continue;
     ViewPoint guessed;
     guessed.host = track.keyframe;
-    guessed.host_bearing = bearing(camera, track.keyframe_pixel.cast<double>());
+    const Eigen::Vector2d pixel = track.keyframe_pixel.cast<double>();
+    guessed.host_bearing =
+        rayOfRow(camera, view.keyframes[track.keyframe].twist, pixel.y(), bearing(camera, pixel)).direction;
     guessed.inverse_depth = inverse_depth;
     guessed.inverse_depth_sigma = options.unmapped_depth_sigma * inverse_depth;
     observations.push_back(observationOf(camera, view, guessed, track, camera_T_world));
@@ -63,7 +65,7 @@ void addUnmapped(const Camera& camera, const MapView& view, const std::vector<Tr
 
 FramePose estimatePose(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
                        const Pose& world_T_predicted, const FramePoseOptions& options,
-                       std::pmr::memory_resource* memory) {
+                       std::pmr::memory_resource* memory, const RowMotion& motion) {
   FramePose pose(memory);
   PoseObservations observations(memory);
   observations.reserve(tracks.size());
@@ -80,7 +82,7 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
   if (view.initialised && options.unmapped_depth_sigma > 0) {
     addUnmapped(camera, view, tracks, predicted_T_world, options, memory, observations);
   }
-  pose.result = adjustPose(camera, world_T_predicted, observations, options, memory);
+  pose.result = adjustPose(camera, world_T_predicted, observations, options, memory, motion);
   // What is not mapped helps the pose, but says nothing of how much of the map is found again.
   observations.resize(mapped);
   pose.result.inliers.resize(mapped);
@@ -96,13 +98,14 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
   bearings.reserve(mapped);
   for (const PoseObservation& observation : observations) {
     points.push_back(observation.point);
-    bearings.push_back(bearing(camera, observation.measurement.pixel));
+    const Eigen::Vector2d& pixel = observation.measurement.pixel;
+    bearings.push_back(rayOfRow(camera, motion.before, pixel.y(), bearing(camera, pixel)).direction);
   }
   const bool half_agree = pose.result.converged && 2 * agree >= visible;
   const ResectioningResult resectioned =
       resectionBySamples(points, bearings, 3.0 / meanFocalLength(camera), /*seed=*/1, half_agree ? 50 : 200, memory);
   if (!resectioned.found) return pose;
-  const PoseResult second = adjustPose(camera, resectioned.camera_T_world.inverse(), observations, options, memory);
+  const PoseResult second = adjustPose(camera, resectioned.camera_T_world.inverse(), observations, options, memory, motion);
   const double fewest = half_agree ? clearly_more * agree : agree;
   if (second.converged && second.inlier_count > fewest) {
     pose.result = second;

@@ -28,7 +28,8 @@ struct FramePose {
 // the map points alone.
 FramePose estimatePose(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
                        const Pose& world_T_predicted, const FramePoseOptions& options,
-                       std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+                       std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
+                       const RowMotion& motion = {});
 
 // The largest standard deviation of a pose: of its position, as a share of `scene_depth`, or of its rotation [rad].
 // `covariance`: of [translation; rotation].

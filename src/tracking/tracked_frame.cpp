@@ -6,6 +6,7 @@ void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole&
   description.frame_index = frame.images->frame_index;
   description.time_ns = frame.images->time_ns;
   description.world_T_camera = frame.world_T_camera;
+  description.twist = frame.twist;
   description.kind = role.kind;
   description.keyframe = role.keyframe;
   description.reason = role.reason;
@@ -15,8 +16,8 @@ void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole&
   description.observations.clear();
   for (const Track& track : frame.tracks) {
     const Measurement measurement = measurementOf(track);
-    description.observations.push_back(
-        {track.id, measurement, bearing(camera, measurement.pixel), track.corner, track.chain, track.order});
+    const Ray ray = rayOfRow(camera, frame.twist, measurement.pixel.y(), bearing(camera, measurement.pixel));
+    description.observations.push_back({track.id, measurement, ray.direction, track.corner, track.chain, track.order});
   }
 }
 

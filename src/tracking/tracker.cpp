@@ -124,7 +124,8 @@ bool Tracker::locate(Work& work) {
   const bool regains = lost_since_ns_ >= 0;
   if (regains && static_cast<double>(work.time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds) return false;
   scratch_.release();
-  const LocationPrior prior{motion_.predict(lastCamera(), work.time_ns), regains, preparation_.accuracy()};
+  const LocationPrior prior{motion_.predict(lastCamera(), work.time_ns), regains, preparation_.accuracy(),
+                            motion_.whileRowsAreRead(lastCamera(), work.time_ns, mapStands())};
   return location_.locate(last_, view_, prior, frame_, scratch_, work.clock);
 }
 
@@ -210,7 +211,7 @@ void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& wor
   const KeyframeId id = keyframes_.make(frame, preparation_.accuracy());
   describe(camera_, frame, {FrameKind::keyframe, id, reason, noise_.factor(), view_.world}, work.for_mapping);
   // Until mapping answers, the keyframe stands where tracking saw it.
-  view_.keyframes.push_back({id, frame.world_T_camera, nullptr});
+  view_.keyframes.push_back({id, frame.world_T_camera, nullptr, Matrix7d::Zero(), frame.twist});
   work.clock.finished(Stage::choice_of_points);
 }
 
@@ -223,7 +224,7 @@ void Tracker::reuseMapWhenDue(Work& work) {
 
 void Tracker::reuseMap(FollowedFrame& frame) {
   scratch_.release();
-  reuseMapPoints(camera_, view_, *frame.images, *frame.edges, frame.world_T_camera, most_tracks_, options_.map_reuse,
+  reuseMapPoints(camera_, view_, *frame.images, *frame.edges, {frame.world_T_camera, frame.twist}, most_tracks_, options_.map_reuse,
                  frame.tracks, &scratch_);
 }
 
@@ -326,6 +327,7 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   for (const FoundAgain& found : points) last_.tracks.push_back(trackOf(found));
   std::sort(last_.tracks.begin(), last_.tracks.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
   last_.world_T_camera = world_T_camera;
+  last_.twist.setZero();
   last_.covariance = covariance;
   last_.inlier_count = 0;
   std::swap(view_, view);
@@ -349,8 +351,9 @@ void Tracker::adopt(MapView& view) {
   // What mapping has not seen yet keeps its place relative to the latest keyframe known to both.
   const KeyframeId latest = view.keyframes.back().id;
   for (const ViewKeyframe& keyframe : view_.keyframes) {
-    if (keyframe.id > latest)
-      view.keyframes.push_back({keyframe.id, moved(*new_S_old, keyframe.world_T_camera), nullptr});
+    if (keyframe.id <= latest) continue;
+    view.keyframes.push_back({keyframe.id, moved(*new_S_old, keyframe.world_T_camera), nullptr, Matrix7d::Zero(),
+                              moved(*new_S_old, keyframe.twist)});
   }
   std::swap(view_, view);
   motion_.scale(new_S_old->scale);
@@ -361,7 +364,11 @@ void Tracker::adopt(MapView& view) {
     keyframes_.askForOne(last_);
   }
   scratch_.release();
-  const FramePose again = estimatePose(camera_, view_, last_.tracks, moved_pose, options_.location.pose, &scratch_);
+  last_.twist = moved(*new_S_old, last_.twist);
+  RowMotion motion;
+  motion.before = last_.twist;
+  const FramePose again =
+      estimatePose(camera_, view_, last_.tracks, moved_pose, options_.location.pose, &scratch_, motion);
   last_.world_T_camera = again.result.converged ? again.result.world_T_camera : moved_pose;
 }
 
