@@ -147,8 +147,9 @@ void placeBlocks(int most_dense, BundleStructure& structure) {
 }  // namespace
 
 bool usable(const BundlePoint& point) {
-  return point.host_bearing.allFinite() && point.host_origin.allFinite() && point.inverse_depth > 0 && std::isfinite(point.inverse_depth) &&
-         std::isfinite(point.prior_sigma) && std::isfinite(point.prior_inverse_depth);
+  return point.host_bearing.allFinite() && point.host_origin.allFinite() && point.inverse_depth > 0 &&
+         std::isfinite(point.inverse_depth) && std::isfinite(point.prior_sigma) &&
+         std::isfinite(point.prior_inverse_depth);
 }
 
 bool usable(const Measurement& measurement) {

@@ -35,11 +35,13 @@ Eigen::Matrix2d whiteningWithDepth(const PoseObservation& observation) {
 
 using PreparedObservations = std::pmr::vector<PreparedObservation>;
 
-PreparedObservations prepare(const Camera& camera, const PoseObservations& observations, std::pmr::memory_resource* memory) {
+PreparedObservations prepare(const Camera& camera, const PoseObservations& observations,
+                             std::pmr::memory_resource* memory) {
   PreparedObservations prepared(memory);
   prepared.reserve(observations.size());
   for (const PoseObservation& o : observations) {
-    prepared.push_back({o.point, {o.measurement.pixel, whiteningWithDepth(o)}, rowTime(camera, o.measurement.pixel.y())});
+    prepared.push_back(
+        {o.point, {o.measurement.pixel, whiteningWithDepth(o)}, rowTime(camera, o.measurement.pixel.y())});
   }
   return prepared;
 }
@@ -245,7 +247,8 @@ PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, 
   const PreparedObservations prepared = prepare(camera, observations, memory);
   const auto adjust = [&](const auto& shutterAt) {
     Pose pose = initial_world_T_camera;
-    result.converged = minimize(shutterAt, prepared, options, pose) && judge(shutterAt(pose), prepared, options, result);
+    result.converged =
+        minimize(shutterAt, prepared, options, pose) && judge(shutterAt(pose), prepared, options, result);
     if (result.converged) result.world_T_camera = pose;
   };
   if (camera.readout_s == 0) {

@@ -61,8 +61,8 @@ struct PoseResult {
 };
 
 // The pose is that of the middle row; where the camera reads its rows one after another, `motion` ties the other rows'
-// poses to it. Observations behind the camera, or with values that are not finite, count as outliers. `memory` serves the result and
-// what is needed on the way.
+// poses to it. Observations behind the camera, or with values that are not finite, count as outliers. `memory` serves
+// the result and what is needed on the way.
 PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
                       const PoseOptions& options, std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
                       const RowMotion& motion = {});

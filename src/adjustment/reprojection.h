@@ -66,8 +66,8 @@ inline bool poseResidual(const Camera& camera, const WhitenedPixel& measured, co
   return true;
 }
 
-// The same for a camera that moves by `twist` and reads the measured row `seconds` after the middle one; the derivatives
-// are by the middle row's pose and by the twist.
+// The same for a camera that moves by `twist` and reads the measured row `seconds` after the middle one; the
+// derivatives are by the middle row's pose and by the twist.
 inline bool rowResidual(const Camera& camera, const WhitenedPixel& measured, const CameraFrame& frame,
                         const Twist& twist, double seconds, const Eigen::Vector3d& point, Eigen::Vector2d& residual,
                         Matrix26d& by_pose, Matrix26d& by_twist) {

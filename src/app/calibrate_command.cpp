@@ -9,6 +9,7 @@
 #include "app/calibration_frames.h"
 #include "app/command_line.h"
 #include "app/end_signals.h"
+#include "app/readout_command.h"
 #include "calibration/board_pdf.h"
 #include "calibration/calibration.h"
 #include "calibration/calibration_text.h"
@@ -24,6 +25,7 @@ struct CalibrateOptions {
   std::string input, camera, configuration, board, output = "camera.yaml", model = "auto";
   double seconds = 0;
   bool force = false;
+  bool readout = false;
 };
 
 struct BoardOptions {
@@ -168,9 +170,9 @@ void addCalibrateCommand(CLI::App& app, int& exit_code) {
   CLI::Option* input =
       command->add_option("INPUT", options->input, "Recording, video, or folder of images; not given: the live camera");
   CLI::Option* camera = command->add_option("--camera", options->camera, "Live camera, as `edgeslam cameras` names it");
-  CLI::Option* configuration = command->add_option("--config", options->configuration,
-                                                   "Configuration (YAML) whose capture section names the camera");
-  input->excludes(camera)->excludes(configuration);
+  command->add_option("--config", options->configuration,
+                      "Configuration (YAML) whose capture section names the camera");
+  input->excludes(camera);
   command->add_option("--board", options->board,
                       "The board: chessboard:9x6:30mm, charuco:8x6:30mm:22mm or aprilgrid:6x6:25mm:0.3");
   command->add_option("--model", options->model, "pinhole_radial_tangential, kannala_brandt (fisheye), or auto")
@@ -180,11 +182,23 @@ void addCalibrateCommand(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.001, 1e9));
   command->add_option("--output", options->output, "Calibration to write (YAML)")->capture_default_str();
   command->add_flag("--force", options->force, "Replace the file");
+  CLI::Option* readout = command->add_flag(
+      "--readout", options->readout,
+      "Find the readout of a rolling shutter instead, from a recording (INPUT) of a calibrated camera that moves");
+  readout->excludes(camera);
   command->require_subcommand(0, 1);
   addBoardCommand(*command, exit_code);
   command->callback([options, command, &exit_code] {
     if (!command->get_subcommands().empty()) return;
+    if (options->readout) {
+      if (options->input.empty()) throw CLI::RequiredError("INPUT");
+      exit_code = findReadout(options->input, options->configuration);
+      return;
+    }
     if (options->board.empty()) throw CLI::RequiredError("--board");
+    if (!options->input.empty() && !options->configuration.empty()) {
+      throw CLI::ExcludesError("INPUT", "--config");
+    }
     if (options->input.empty() && options->camera.empty() && options->configuration.empty()) {
       throw CLI::RequiredError("INPUT, --camera or --config");
     }

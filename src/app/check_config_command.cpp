@@ -19,6 +19,7 @@ void listCamera(const Camera& camera) {
             << (camera.model == CameraModel::kannala_brandt ? "Kannala-Brandt fisheye" : "pinhole, radial-tangential")
             << ", focal lengths " << camera.fx << " " << camera.fy << " px, centre " << camera.cx << " " << camera.cy
             << " px\n";
+  if (camera.readout_s != 0) std::cout << "  rows are read over " << 1e3 * camera.readout_s << " ms\n";
 }
 
 void listDifferences(const Configuration& configuration) {
@@ -41,6 +42,9 @@ void listDifferences(const Configuration& configuration) {
     listCamera(*configuration.camera);
   } else {
     std::cout << "  camera: not given; taken from beside the recording\n";
+    if (configuration.readout_s) {
+      std::cout << "  its rows are read over " << 1e3 * *configuration.readout_s << " ms, whatever it says itself\n";
+    }
   }
 }
 

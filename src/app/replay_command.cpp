@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "configuration/configuration.h"
 #include "configuration/configuration_text.h"
 #include "configuration/input_configuration.h"
+#include "files/format_text.h"
 #include "frames/frame_problem.h"
 #include "map/saved_map.h"
 #include "pipeline/lockstep_run.h"
@@ -70,11 +72,21 @@ void tellSkipped(std::int64_t index, const std::string& problem, const ReplayPro
   std::cerr << "edgeslam: frame " << index << " skipped: " << problem << "\n";
 }
 
+// Before anything is made of frames that cannot have been read so slowly.
+void requireReadoutWithin(const Camera& camera, double frame_interval_s) {
+  if (std::abs(camera.readout_s) <= frame_interval_s) return;
+  throw InputError(
+      formatted("the calibration's readout is %.4g s, but a frame comes every %.4g s: rows are read in "
+                "less time than that; is it in seconds?",
+                camera.readout_s, frame_interval_s));
+}
+
 void processAll(FrameSource& source, const Camera& camera, LockstepRun& run) {
   ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
     if (count++ == 0) first_ns = frame->time_ns;
+    if (count == 2) requireReadoutWithin(camera, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
     const std::string problem = frameProblem(*frame, camera);
     if (!problem.empty()) tellSkipped(frame->index, problem, progress);
     const FrameRecord& record = problem.empty() ? run.process(frame->index, frame->time_ns, frame->grey)

@@ -70,6 +70,11 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
   command->add_flag("--fisheye", simulation.fisheye, "Fisheye lens (Kannala-Brandt)");
   command->add_option("--exposure", simulation.exposure_ms, "Exposure time [ms]; 0: no motion blur")
       ->capture_default_str();
+  command
+      ->add_option("--readout", simulation.readout_ms,
+                   "Rolling shutter: time from the first row's exposure to the last one's [ms], -200 to 200 and no "
+                   "longer than from one frame to the next; 0: global shutter; negative: the last row comes first")
+      ->capture_default_str();
   command->add_option("--noise", simulation.noise, "Standard deviation of the noise at grey 128")
       ->capture_default_str();
   command->add_option("--speed", simulation.speed, "Speed along the path; 1: the scene's usual")->capture_default_str();

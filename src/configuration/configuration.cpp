@@ -189,6 +189,11 @@ void readFile(const std::string& path, bool may_include, Configuration& configur
 
 }  // namespace
 
+Camera withReadout(Camera camera, const Configuration& configuration) {
+  camera.readout_s = configuration.readout_s.value_or(camera.readout_s);
+  return camera;
+}
+
 Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems) {
   Configuration configuration;
   readFile(path, true, configuration, problems);

@@ -31,11 +31,16 @@ struct ServiceOptions {
 struct Configuration {
   Settings settings;
   std::optional<Camera> camera;  // where the file gives one
-  Pose body_T_camera;            // of the camera on the robot, translation [m]; the identity unless the file gives it
-  CameraOptions capture;         // the live camera
+  // Where the file gives it without a calibration: instead of that of whatever calibration is taken.
+  std::optional<double> readout_s;
+  Pose body_T_camera;     // of the camera on the robot, translation [m]; the identity unless the file gives it
+  CameraOptions capture;  // the live camera
   ServiceOptions service;
   std::string source;  // path of the file; empty for the defaults
 };
+
+// The camera, with the configuration's readout where that gives one by itself.
+Camera withReadout(Camera camera, const Configuration& configuration);
 
 // An empty file gives the defaults; an included file is read first. Throws InputError `FILE:LINE: KEY: ...` at the
 // first problem.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "frames/calibration_file.h"
 
@@ -44,6 +45,12 @@ std::vector<CalibrationKey> calibrationKeys(Camera& camera) {
   return keys;
 }
 
+// What is wrong with the value; empty where it is set.
+std::string setNumber(const ConfigurationKey& key, const YAML::Node& value) {
+  const std::string wrong = value.IsScalar() ? setValue(key, value.Scalar()) : "not a number";
+  return wrong.empty() ? "" : key.path + ": " + wrong + "; expected " + expectedValue(key);
+}
+
 void readInlineCalibration(const YAML::Node& section, Configuration& configuration, const TellProblem& tell) {
   Camera camera;
   bool good = true;
@@ -66,8 +73,8 @@ void readInlineCalibration(const YAML::Node& section, Configuration& configurati
       if (is_needed) reject(section, key.path + " is missing (" + key.documentation + ", " + expectedValue(key) + ")");
       continue;
     }
-    const std::string wrong = value.IsScalar() ? setValue(key, value.Scalar()) : "not a number";
-    if (!wrong.empty()) reject(value, key.path + ": " + wrong + "; expected " + expectedValue(key));
+    const std::string wrong = setNumber(key, value);
+    if (!wrong.empty()) reject(value, wrong);
   }
   for (const char* name : {"p1", "p2", "k4"}) {
     const bool has =
@@ -89,9 +96,10 @@ void readCalibrationFile(const YAML::Node& section, const YAML::Node& calibratio
   }
   for (const auto& entry : section) {
     const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    if (name != "calibration" && name != "body_T_camera") {
-      tell(entry.first.Mark().line, "camera." + name + ": the calibration is in a file already (camera.calibration)");
-    }
+    if (name == "calibration" || name == "readout" || name == "body_T_camera") continue;
+    tell(entry.first.Mark().line, "camera." + name +
+                                      ": the calibration is in a file already (camera.calibration); only "
+                                      "camera.readout can be given beside it");
   }
   const std::filesystem::path folder = std::filesystem::path(configuration.source).parent_path();
   try {
@@ -99,6 +107,13 @@ void readCalibrationFile(const YAML::Node& section, const YAML::Node& calibratio
   } catch (const InputError& error) {
     tell(calibration.Mark().line, std::string("camera.calibration: ") + error.what());
   }
+}
+
+void readReadout(const YAML::Node& readout, Configuration& configuration, const TellProblem& tell) {
+  double readout_s = 0;
+  const ConfigurationKey key{"camera.readout", &readout_s, "s", -longest_readout_s, longest_readout_s};
+  if (const std::string wrong = setNumber(key, readout); !wrong.empty()) return tell(readout.Mark().line, wrong);
+  configuration.readout_s = readout_s;
 }
 
 // The numbers of a list, nested lists flattened by one level; false where anything else is in it.
@@ -166,7 +181,7 @@ std::vector<ConfigurationKey> calibrationKeyNames() {
   struct Shown {
     const char *name, *example, *documentation;  // documented before the first of several that go together
   };
-  constexpr std::array<Shown, 12> shown{{
+  constexpr std::array<Shown, 13> shown{{
       {"width", "640", "image size [px]"},
       {"height", "480", ""},
       {"fx", "520.9", "focal lengths [px]"},
@@ -179,6 +194,9 @@ std::vector<ConfigurationKey> calibrationKeyNames() {
       {"p2", "-0.0001", ""},
       {"k3", "0.9172", ""},
       {"k4", "0", ""},
+      {"readout", "0.02",
+       "of a rolling shutter: from the first row's reading to the last one's [s], negative where they are read from "
+       "below;\n0 for a global shutter. Also beside camera.calibration, in place of that of the file"},
   }};
   std::vector<ConfigurationKey> names;
   for (const Shown& key : shown) {
@@ -192,12 +210,17 @@ std::vector<ConfigurationKey> calibrationKeyNames() {
 }
 
 void readCameraSection(const YAML::Node& section, Configuration& configuration, const TellProblem& tell) {
-  const YAML::Node calibration = section["calibration"], pose = section["body_T_camera"];
+  const YAML::Node calibration = section["calibration"], readout = section["readout"], pose = section["body_T_camera"];
+  const bool has_calibration = section.size() > (readout ? 1U : 0U) + (pose ? 1U : 0U);
   if (calibration) {
     readCalibrationFile(section, calibration, configuration, tell);
-  } else if (section.size() > (pose ? 1U : 0U)) {
+  } else if (has_calibration) {
     readInlineCalibration(section, configuration, tell);
   }
+  if (readout) readReadout(readout, configuration, tell);
+  if (configuration.camera) configuration.camera = withReadout(*configuration.camera, configuration);
+  // Beside a calibration it is of that one, and not of another that takes its place.
+  if (readout && has_calibration) configuration.readout_s.reset();
   if (pose) {
     std::string wrong = "a 4x4 matrix or a mapping of translation and quaternion is expected";
     if (pose.IsSequence()) wrong = poseFromMatrix(pose, configuration.body_T_camera);
@@ -212,11 +235,14 @@ std::string formatCameraSection(const Configuration& configuration) {
   const Eigen::Quaterniond& q = pose.rotation;
   std::string text = "camera:\n";
   if (configuration.camera) {
-    Camera camera = *configuration.camera;
+    Camera camera = withReadout(*configuration.camera, configuration);  // also one that was set since
     text += std::string("  model: ") + modelName(camera.model) + "\n";
     for (const CalibrationKey& known : calibrationKeys(camera)) {
       text += "  " + known.key.name() + ": " + valueText(known.key.field) + "\n";
     }
+    text += "  readout: " + numberText(camera.readout_s) + "\n";
+  } else if (configuration.readout_s) {
+    text += "  readout: " + numberText(*configuration.readout_s) + "\n";
   }
   text += "  body_T_camera: {translation: [" + numberText(t.x()) + ", " + numberText(t.y()) + ", " + numberText(t.z()) +
           "], quaternion: [" + numberText(q.w()) + ", " + numberText(q.x()) + ", " + numberText(q.y()) + ", " +

@@ -140,8 +140,16 @@ void checkCamera(const Section& section, const Camera& camera, const CameraKeys&
   }
 }
 
+double readReadout(const Section& section, const std::string& key, double times) {
+  const double readout_s = section.number(key) * times;
+  if (std::abs(readout_s) > longest_readout_s) {
+    section.failAt(key, "the readout must be -0.2 to 0.2 seconds, from the first row's reading to the last one's");
+  }
+  return readout_s;
+}
+
 Camera readOwn(const Section& section) {
-  std::vector<std::string> known{"width", "height", "fx",         "fy",         "cx",           "cy",   "k1",
+  std::vector<std::string> known{"width", "height", "fx",         "fy",         "cx",           "cy",    "k1",
                                  "k2",    "fps",    "board_cols", "board_rows", "board_square", "model", "readout"};
   Camera camera;
   std::vector<std::string> distortion{"k1", "k2", "p1", "p2", "k3"};
@@ -170,13 +178,8 @@ Camera readOwn(const Section& section) {
     }
   }
   if (section.has("fps") && !(section.number("fps") > 0)) section.failAt("fps", "'fps' must be greater than 0");
-  if (section.has("readout")) {
-    camera.readout_s = section.number("readout");
-    if (std::abs(camera.readout_s) > longest_readout_s) {
-      section.failAt("readout", "the readout must be -0.2 to 0.2 seconds, from the first row's reading to the last one's");
-    }
-  }
   checkCamera(section, camera, {"width", "height", "fx", "fy", "cx", "cy", "width"});
+  if (section.has("readout")) camera.readout_s = readReadout(section, "readout", 1);
   return camera;
 }
 
@@ -258,6 +261,13 @@ Camera readCalibrationLists(const Section& section, const std::string& coefficie
   return camera;
 }
 
+Camera readKalibr(const Section& section) {
+  Camera camera = readCalibrationLists(section, "distortion_coeffs", "radtan");
+  // [s], from row to row.
+  if (section.has("line_delay")) camera.readout_s = readReadout(section, "line_delay", camera.height - 1);
+  return camera;
+}
+
 }  // namespace
 
 Camera readCalibration(const std::string& path) {
@@ -270,7 +280,7 @@ Camera readCalibration(const std::string& path) {
   try {
     const YAML::Node root = YAML::LoadFile(path);
     const Section section(path, root);
-    if (section.has("cam0")) return readCalibrationLists(section.section("cam0"), "distortion_coeffs", "radtan");
+    if (section.has("cam0")) return readKalibr(section.section("cam0"));
     if (section.has("image_width") || section.has("camera_matrix")) return readRos(section);
     if (section.has("sensor_type") || section.has("intrinsics")) {
       return readCalibrationLists(section, "distortion_coefficients", "radial-tangential");

@@ -12,6 +12,7 @@ enum class CameraModel { pinhole_radial_tangential, kannala_brandt };
 
 // The longest side that an image may have [px]; more is a damaged file.
 constexpr int largest_camera_side = 32768;
+constexpr double longest_readout_s = 0.2;  // either sign
 
 struct Camera {
   CameraModel model = CameraModel::pinhole_radial_tangential;

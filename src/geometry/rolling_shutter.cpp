@@ -1,9 +1,8 @@
 #include "geometry/rolling_shutter.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/LU>
 
 namespace edgeslam {
 

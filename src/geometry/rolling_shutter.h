@@ -56,9 +56,9 @@ Twist twistBetween(const Pose& world_T_before, const Pose& world_T_now, double s
 // frame before and this one it moved steadily, and changed its motion since then as it did in the time before.
 struct RowMotion {
   Pose world_T_before;
-  double seconds = 0;                  // since the frame before; 0: the motion is known to be `before`
-  Twist before = Twist::Zero();        // of the frame before
-  bool is_known_from_before = false;   // there was a motion before
+  double seconds = 0;                 // since the frame before; 0: the motion is known to be `before`
+  Twist before = Twist::Zero();       // of the frame before
+  bool is_known_from_before = false;  // there was a motion before
 };
 
 // The motion as a pose of the frame tells it, and its derivative by that pose's update where asked for.

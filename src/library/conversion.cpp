@@ -32,7 +32,10 @@ SlamState publicState(TrackingState state) {
 Configuration libraryConfiguration(const std::string& calibration_file, const std::string& configuration_file) {
   Configuration configuration = configuration_file.empty() ? Configuration() : readConfiguration(configuration_file);
   if (!calibration_file.empty()) configuration.camera = readCalibration(calibration_file);
-  if (configuration.camera) return configuration;
+  if (configuration.camera) {
+    configuration.camera = withReadout(*configuration.camera, configuration);
+    return configuration;
+  }
   throw InputError(configuration_file + ": no calibration: give one (camera.calibration)");
 }
 

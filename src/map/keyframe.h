@@ -46,7 +46,7 @@ struct TrackedFrame {
   FrameKind kind = FrameKind::start;
   std::int64_t frame_index = 0;
   std::int64_t time_ns = 0;
-  Pose world_T_camera;  // as tracking estimated it; of a lost frame without meaning
+  Pose world_T_camera;          // as tracking estimated it; of a lost frame without meaning
   Twist twist = Twist::Zero();  // of the camera as its rows were read
   std::vector<PointObservation> observations;
   std::shared_ptr<const FrameImages> images;  // null for FrameKind::start

@@ -65,6 +65,9 @@ std::string keyframeProblem(const Camera& camera, const Keyframe& keyframe) {
   if (!isUnit(keyframe.world_T_camera.rotation)) return "its rotation is no unit quaternion";
   const Eigen::Vector3d& position = keyframe.world_T_camera.translation;
   if (!std::all_of(position.data(), position.data() + 3, isBounded)) return "its position is out of range";
+  if (!std::all_of(keyframe.twist.data(), keyframe.twist.data() + keyframe.twist.size(), isBounded)) {
+    return "its motion while its rows were read is out of range";
+  }
   if (!isPlainText(keyframe.reason)) return "its reason is not plain text";
   PointId before = -1;
   for (const PointObservation& observation : keyframe.observations) {
@@ -123,6 +126,9 @@ std::string cameraProblem(const Camera& camera) {
   if (!isBounded(camera.cx) || !isBounded(camera.cy)) return "camera: the principal point is out of range";
   if (!std::all_of(camera.distortion.begin(), camera.distortion.end(), isBounded)) {
     return "camera: the distortion is out of range";
+  }
+  if (!(std::abs(camera.readout_s) <= longest_readout_s)) {
+    return "camera: the readout must be -0.2 to 0.2 seconds";
   }
   return "";
 }

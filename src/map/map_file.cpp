@@ -14,11 +14,11 @@ namespace edgeslam {
 namespace {
 
 constexpr std::string_view magic("EDGESLAM MAP\r\n\x1a\n", 16);
-constexpr std::uint32_t version_with_worlds = 2;
+constexpr std::uint32_t version_with_worlds = 2, version_with_readout = 3;
 constexpr std::size_t header_size = 28, checksum_size = 4;
 constexpr std::string_view camera_section = "CAMR", keyframe_section = "KEYF", point_section = "PNTS";
 
-// Bytes of a record that has nothing of variable length.
+// Bytes of a record that has nothing of variable length; of a keyframe in the first version, where it is shortest.
 constexpr std::size_t observation_size = 89, least_keyframe_size = 93, least_point_size = 73, keyframe_id_size = 4;
 
 // A few bytes of PNG can become a large image; all together may take so much memory [byte].
@@ -26,9 +26,10 @@ constexpr std::uint64_t largest_images = std::uint64_t{1} << 32;
 
 // The fields of each record in the file's order, for writing and reading alike.
 template <typename Stream, typename CameraFields>
-void cameraFields(Stream& stream, CameraFields& camera) {
+void cameraFields(Stream& stream, CameraFields& camera, std::uint32_t version) {
   stream(camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
   for (auto& coefficient : camera.distortion) stream(coefficient);
+  if (version >= version_with_readout) stream(camera.readout_s);
 }
 
 template <typename Stream, typename KeyframeFields>
@@ -39,6 +40,9 @@ void keyframeFields(Stream& stream, KeyframeFields& keyframe, std::uint32_t vers
   if (version >= version_with_worlds) stream(keyframe.world);
   stream(keyframe.frame_index, keyframe.time_ns);
   stream(rotation[3], rotation[0], rotation[1], rotation[2], translation[0], translation[1], translation[2]);
+  if (version >= version_with_readout) {
+    for (auto& component : keyframe.twist) stream(component);
+  }
   stream(keyframe.reason);
 }
 
@@ -107,7 +111,7 @@ void writeCamera(ByteWriter& writer, const Camera& camera) {
   writer.raw(camera_section);
   const std::size_t begin = writer.beginLength();
   writer.u32(static_cast<std::uint32_t>(camera.model));
-  cameraFields(writer, camera);
+  cameraFields(writer, camera, map_format_version);
   writer.endLength(begin);
 }
 
@@ -173,12 +177,12 @@ ByteReader openSection(ByteReader& payload, std::string_view section) {
   return payload.part(payload.u64());
 }
 
-Camera readCamera(ByteReader reader) {
+Camera readCamera(ByteReader reader, std::uint32_t version) {
   Camera camera;
   const std::uint32_t model = reader.u32();
   if (model > 1) reader.fail("camera: unknown model " + std::to_string(model));
   camera.model = static_cast<CameraModel>(model);
-  cameraFields(reader, camera);
+  cameraFields(reader, camera, version);
   const std::string problem = cameraProblem(camera);
   if (!problem.empty()) reader.fail(problem);
   reader.expectEnd();
@@ -258,7 +262,7 @@ SavedMap decodeMap(std::string_view bytes, const std::string& name) {
   std::uint32_t version = 0;
   ByteReader payload = openPayload(bytes, name, version);
   SavedMap saved;
-  saved.camera = readCamera(openSection(payload, camera_section));
+  saved.camera = readCamera(openSection(payload, camera_section), version);
   readKeyframes(openSection(payload, keyframe_section), {saved.camera.width, saved.camera.height}, version, saved.map);
   readPoints(openSection(payload, point_section), saved.map);
   payload.expectEnd();

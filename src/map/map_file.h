@@ -1,7 +1,7 @@
 // The saved map: all of a map in one run of bytes, versioned and with a checksum, the same on every machine.
 //
 // Numbers are little endian: u32 u64 i32 i64, f64 (IEEE 754), flag (one byte, 0 or 1). A text and an image are a u64
-// length and so many bytes; a list is a u64 count and so many records. The layout of version 2:
+// length and so many bytes; a list is a u64 count and so many records. The layout of version 3:
 //
 //   "EDGESLAM MAP\r\n\x1a\n"   16 bytes
 //   version                    u32
@@ -10,11 +10,12 @@
 //   checksum                   u32, CRC-32 (zlib's crc32) of all bytes before it
 //
 //   CAMR   model u32 (0 pinhole with radial-tangential distortion, 1 Kannala-Brandt), width i32, height i32 [px],
-//          fx fy cx cy f64 [px], distortion 5 f64
+//          fx fy cx cy f64 [px], distortion 5 f64, readout f64 [s] (not in versions 1 and 2: 0)
 //   KEYF   list of keyframes, ids ascending: id i32, world i32 (not in version 1: all are 0), frame index i64, time i64
-//   [ns], world_T_camera (rotation w x y z,
-//          translation x y z, f64), reason text (ASCII), list of observations (points ascending), has images flag;
-//          where 1: frame index i64 and time i64 [ns] of the images, pyramid levels i32, image (grey 8-bit PNG)
+//          [ns], world_T_camera (rotation w x y z, translation x y z, f64), twist (translation [map units/s], rotation
+//          [rad/s], 6 f64; not in versions 1 and 2: 0), reason text (ASCII), list of observations (points ascending),
+//          has images flag; where 1: frame index i64 and time i64 [ns] of the images, pyramid levels i32, image (grey
+//          8-bit PNG)
 //          observation: point i64, pixel x y f64, normal x y f64, sigma across and along the edge f64 [px], bearing
 //          x y z f64, corner flag, chain i32, order i32
 //   PNTS   list of points, ids ascending: id i64, host i32, bearing in the host x y z f64, inverse depth and its sigma
@@ -32,7 +33,7 @@
 
 namespace edgeslam {
 
-constexpr std::uint32_t map_format_version = 2;
+constexpr std::uint32_t map_format_version = 3;
 
 struct SavedMap {
   Camera camera;  // whose pixels the observations are

@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include "edgeslam/input_error.h"
 #include "files/atomic_file.h"
+#include "files/format_text.h"
 #include "map/map_check.h"
 
 namespace edgeslam {
@@ -64,10 +66,13 @@ void requireMapCanBeSaved(const std::string& path) {
 Map loadMap(const std::string& path, const Camera& camera) {
   SavedMap saved = decodeMap(readWhole(path), path);
   if (saved.map.keyframes.empty()) throw InputError(path + ": the map has no keyframe");
-  if (!(saved.camera == camera)) {
-    throw InputError(path + ": the map was made with another calibration than that of these frames");
+  if (saved.camera == camera) return std::move(saved.map);
+  std::string problem = path + ": the map was made with another calibration than that of these frames";
+  const double readout_s = std::exchange(saved.camera.readout_s, camera.readout_s);
+  if (saved.camera == camera) {
+    problem += formatted(": its readout is %.9g s, theirs is %.9g s", readout_s, camera.readout_s);
   }
-  return std::move(saved.map);
+  throw InputError(problem);
 }
 
 }  // namespace edgeslam

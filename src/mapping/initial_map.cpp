@@ -21,7 +21,8 @@ void addKeyframe(const TrackedFrame& frame, KeyframeId id, const Pose& pose, con
 
 }  // namespace
 
-Map initialMap(const Camera& camera, const InitialFrames& frames, const InitialStructure& structure, double largest_depth_sigma) {
+Map initialMap(const Camera& camera, const InitialFrames& frames, const InitialStructure& structure,
+               double largest_depth_sigma) {
   Map map;
   const KeyframeId first_id = frames.first.keyframe;
   KeyframeId id = first_id;

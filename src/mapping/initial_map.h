@@ -12,7 +12,8 @@ namespace edgeslam {
 
 // Keyframe 0 is the first frame, in whose camera frame the world is; the structure's frames follow. Has the points that
 // one of these sees and whose inverse depth is known better than to `largest_depth_sigma`, a share of it.
-Map initialMap(const Camera& camera, const InitialFrames& frames, const InitialStructure& structure, double largest_depth_sigma);
+Map initialMap(const Camera& camera, const InitialFrames& frames, const InitialStructure& structure,
+               double largest_depth_sigma);
 
 // Frame index and keyframe0_T_camera of the first frame and those since, ascending; without those from before the last
 // one that cannot be located.

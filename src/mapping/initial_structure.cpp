@@ -12,7 +12,8 @@ namespace edgeslam {
 namespace {
 
 // Camera 0 is the first frame, camera k + 1 the start's k-th; a point has the index that it has in the first frame.
-BundleProblem bundleProblem(const Camera& camera, const InitialFrames& frames, const InitialStart& start, double prior_sigma) {
+BundleProblem bundleProblem(const Camera& camera, const InitialFrames& frames, const InitialStart& start,
+                            double prior_sigma) {
   BundleProblem problem;
   problem.cameras.push_back({Pose(), true, frames.first.twist});
   for (std::size_t k = 0; k < start.frames.size(); ++k) {

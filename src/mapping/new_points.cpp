@@ -29,8 +29,9 @@ bool passesThreeViews(const Camera& camera, const Map& map, PointId id, const st
   const PointObservation* b = findObservation(middle, id);
   const PointObservation* c = findObservation(last, id);
   if (!a->corner || !b->corner || !c->corner) return true;
-  return threeViewError(camera, poseInRow(camera, first, *a), poseInRow(camera, middle, *b), poseInRow(camera, last, *c),
-                        a->measurement.pixel, b->measurement, c->measurement.pixel) < limit;
+  return threeViewError(camera, poseInRow(camera, first, *a), poseInRow(camera, middle, *b),
+                        poseInRow(camera, last, *c), a->measurement.pixel, b->measurement,
+                        c->measurement.pixel) < limit;
 }
 
 }  // namespace

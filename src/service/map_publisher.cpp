@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "map/worlds.h"
 #include "pipeline/map_records.h"
 
 namespace edgeslam {
@@ -74,7 +75,8 @@ void MapPublisher::showWhereChanged(Clock::time_point now) {
 }
 
 void MapPublisher::mapCame(const std::shared_ptr<const Map>& map) {
-  const int world = world_ >= 0 ? world_ : largestWorld(*map);
+  // The world that the camera was in last may be gone: joined to another, or given up.
+  const int world = firstKeyframeOf(*map, world_) >= 0 ? world_ : largestWorld(*map);
   if (viewer_) viewer_->map(map, world);
   if (!std::exchange(is_wanted_, false)) return;
   work_.begin([this, map, world, camera = camera_, version = ++version_]() -> BackgroundWork::Completion {

@@ -44,8 +44,9 @@ struct PixelArea {
   int x = 0, y = 0, width = 0, height = 0;  // [px]
 };
 
-PixelArea cutToImage(int x, int y, int side, const RayTable& rays) {
-  return {x, y, std::min(side, rays.width - x), std::min(side, rays.height - y)};
+// The square from (x, y) on, as far as it lies inside `area`.
+PixelArea squareIn(const PixelArea& area, int x, int y, int side) {
+  return {x, y, std::min(side, area.x + area.width - x), std::min(side, area.y + area.height - y)};
 }
 
 std::size_t tableIndex(const RayTable& rays, int x, int y) {
@@ -172,9 +173,9 @@ int renderTile(Tile& tile, const LitScene& lit, const std::vector<SeenPointers>&
   return poses * rays_per_pose;
 }
 
-}  // namespace
-
-cv::Mat renderRadiance(const LitScene& lit, const RayTable& rays, const std::vector<Pose>& world_T_camera) {
+// Writes the part of `radiance` that is in `area`.
+void renderArea(const LitScene& lit, const RayTable& rays, const std::vector<Pose>& world_T_camera,
+                const PixelArea& area, cv::Mat& radiance) {
   std::vector<std::vector<SeenRectangle>> seen;
   std::vector<SeenPointers> all(world_T_camera.size()), in_block(world_T_camera.size());
   seen.reserve(world_T_camera.size());
@@ -182,26 +183,41 @@ cv::Mat renderRadiance(const LitScene& lit, const RayTable& rays, const std::vec
     seen.push_back(seenFrom(lit.scene, world_T_camera[k]));
     for (const SeenRectangle& r : seen.back()) all[k].push_back(&r);
   }
-  cv::Mat radiance(rays.height, rays.width, CV_32F);
   Tile tile;
-  for (int block_y = 0; block_y < rays.height; block_y += kBlock) {
-    for (int block_x = 0; block_x < rays.width; block_x += kBlock) {
-      const PixelArea block = cutToImage(block_x, block_y, kBlock, rays);
+  for (int block_y = area.y; block_y < area.y + area.height; block_y += kBlock) {
+    for (int block_x = area.x; block_x < area.x + area.width; block_x += kBlock) {
+      const PixelArea block = squareIn(area, block_x, block_y, kBlock);
       const RayBox block_box = boxAround(rays, block);
       for (std::size_t k = 0; k < all.size(); ++k) findFirstHits(all[k], block_box, in_block[k]);
       for (int y = block.y; y < block.y + block.height; y += kTile) {
         for (int x = block.x; x < block.x + block.width; x += kTile) {
-          const PixelArea area = cutToImage(x, y, kTile, rays);
-          loadTile(tile, rays, area);
+          const PixelArea pixels = squareIn(block, x, y, kTile);
+          loadTile(tile, rays, pixels);
           const float weight = 1.0F / static_cast<float>(renderTile(tile, lit, in_block));
-          for (int row = 0; row < area.height; ++row) {
-            const float* from = tile.sum.data() + static_cast<std::ptrdiff_t>(row) * area.width;
-            std::transform(from, from + area.width, radiance.ptr<float>(y + row) + x,
+          for (int row = 0; row < pixels.height; ++row) {
+            const float* from = tile.sum.data() + static_cast<std::ptrdiff_t>(row) * pixels.width;
+            std::transform(from, from + pixels.width, radiance.ptr<float>(y + row) + x,
                            [weight](float sum) { return weight * sum; });
           }
         }
       }
     }
+  }
+}
+
+}  // namespace
+
+cv::Mat renderRadiance(const LitScene& lit, const RayTable& rays, const std::vector<Pose>& world_T_camera) {
+  cv::Mat radiance(rays.height, rays.width, CV_32F);
+  renderArea(lit, rays, world_T_camera, {0, 0, rays.width, rays.height}, radiance);
+  return radiance;
+}
+
+cv::Mat renderRowByRow(const LitScene& lit, const RayTable& rays,
+                       const std::function<std::vector<Pose>(int row)>& world_T_camera) {
+  cv::Mat radiance(rays.height, rays.width, CV_32F);
+  for (int row = 0; row < rays.height; ++row) {
+    renderArea(lit, rays, world_T_camera(row), {0, row, rays.width, 1}, radiance);
   }
   return radiance;
 }

@@ -7,6 +7,7 @@
 
 #include "edgeslam/input_error.h"
 #include "files/format_text.h"
+#include "geometry/rolling_shutter.h"
 #include "simulator/scene_lighting.h"
 
 namespace edgeslam {
@@ -40,6 +41,12 @@ void checkOptions(const SimulationOptions& options) {
   checkRange("height", options.height, 64, 4096);
   checkRange("noise", options.noise, 0, 60);
   checkRange("exposure", options.exposure_ms, 0, 1000 / options.fps);
+  checkRange("readout", options.readout_ms, -1e3 * longest_readout_s, 1e3 * longest_readout_s);
+  const double interval_ms = 1000 / options.fps;
+  if (std::abs(options.readout_ms) > interval_ms) {
+    throw InputError(formatted("simulate: readout is %g ms, longer than the %g ms from one frame to the next",
+                               options.readout_ms, interval_ms));
+  }
   checkRange("speed", options.speed, 0.05, 10);
 }
 
@@ -47,6 +54,7 @@ Camera makeCamera(const SimulationOptions& options) {
   Camera camera;
   camera.width = options.width;
   camera.height = options.height;
+  camera.readout_s = 1e-3 * options.readout_ms;
   // Lenses for 640 x 480, scaled so that the field of view covers the larger image side as there.
   const double scale = std::max(options.width / 640.0, options.height / 480.0);
   const double middle_x = 0.5 * (options.width - 1), middle_y = 0.5 * (options.height - 1);
@@ -74,7 +82,8 @@ double frameTime(const SimulationOptions& options, int index) { return index / o
 std::vector<TimeSpan> timeSpans(const std::vector<FrameRange>& ranges, double fps) {
   std::vector<TimeSpan> spans;
   for (const FrameRange& range : ranges) {
-    // Half an interval more at each end: the whole exposure of every frame lies inside.
+    // Half an interval more at each end: the whole exposure of every frame lies inside, or nearly so where the readout
+    // is about as long as the interval.
     spans.push_back({(range.first - 0.5) / fps, (range.first + range.count - 0.5) / fps});
   }
   return spans;
@@ -102,6 +111,13 @@ std::vector<Pose> exposurePoses(const SimulatedSequence& sequence, double time_s
   return poses;
 }
 
+cv::Mat radianceAt(const SimulatedSequence& sequence, double time_s) {
+  const Camera& camera = sequence.camera;
+  if (camera.readout_s == 0) return renderRadiance(sequence.scene, sequence.rays, exposurePoses(sequence, time_s));
+  return renderRowByRow(sequence.scene, sequence.rays,
+                        [&](int row) { return exposurePoses(sequence, time_s + rowTime(camera, row)); });
+}
+
 }  // namespace
 
 FrameRange parseFrameRange(const std::string& text) {
@@ -123,8 +139,7 @@ Pose SimulatedSequence::groundTruth(int index) const { return poseAt(motion, fra
 
 SimulatedFrame SimulatedSequence::frame(int index) const {
   if (index < 0 || index >= size()) throw std::out_of_range("SimulatedSequence::frame");
-  const double time_s = frameTime(options, index);
-  const cv::Mat radiance = renderRadiance(scene, rays, exposurePoses(*this, time_s));
+  const cv::Mat radiance = radianceAt(*this, frameTime(options, index));
   const double light = isIn(options.covered, index) ? covered_light : 1;
   SensorOptions sensor;
   sensor.noise = options.noise;

@@ -35,6 +35,7 @@ struct SimulationOptions {
   int height = 480;                 // [px]
   bool fisheye = false;             // Kannala-Brandt in place of pinhole with radial-tangential distortion
   double exposure_ms = 8;           // 0: no motion blur
+  double readout_ms = 0;            // from the first row to the last; 0: a global shutter; negative: from below
   double noise = 2.0;               // standard deviation at grey 128 [grey]
   double speed = 1;                 // of the camera on its path, 1: the scene's usual speed
   std::vector<FrameRange> covered;  // a hand on the lens
@@ -44,7 +45,7 @@ struct SimulationOptions {
 };
 
 struct SimulatedFrame {
-  std::int64_t time_ns = 0;  // middle of the exposure
+  std::int64_t time_ns = 0;  // middle of the middle row's exposure
   cv::Mat grey;              // CV_8U
   Pose world_T_camera;       // at that time
 };

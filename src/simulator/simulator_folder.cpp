@@ -95,6 +95,7 @@ std::string formatCalibration(const Camera& camera, const SimulationOptions& opt
   append("k2", camera.distortion[1]);
   append(fisheye ? "k3" : "p1", camera.distortion[2]);
   append(fisheye ? "k4" : "p2", camera.distortion[3]);
+  if (camera.readout_s != 0) append("readout", camera.readout_s);
   append("fps", options.fps);
   return text;
 }

@@ -13,6 +13,7 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
                            FollowedFrame& frame, std::pmr::memory_resource& memory, StageClock& clock) const {
   const FrameImages& from = *last.images;
   const FrameImages& to = *frame.images;
+  frame.noise = {};
   const double scene_depth = medianDepth(last.tracks, view, last.world_T_camera, 1.0, &memory);
   const AlignmentPoints points = placeTracks(camera_, last.tracks, view, last.world_T_camera, scene_depth, &memory);
   const Pose predicted = alignImages(last, points, prior.world_T_predicted, frame, memory);
@@ -31,8 +32,8 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   refineTracks(camera_, view, to, {first.result.world_T_camera, first.result.twist}, scene_depth, options_.refinement,
                frame.tracks);
   clock.finished(Stage::refinement);
-  const FramePose pose = estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory,
-                                      prior.motion);
+  const FramePose pose =
+      estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory, prior.motion);
   // What the points say of the noise they say of a pose that is refused as well: else it could not rise when it
   // matters.
   if (view.initialised) frame.noise = noiseEvidence(pose.result.errors_across, &memory);

@@ -35,6 +35,7 @@ void clear(FrameResult& result) {
   result.world_covariance.setZero();
   result.reference = -1;
   result.tracked_points = result.mapped_points = 0;
+  result.measured_noise = 0;
   result.noise_factor = 1;
   result.times = StageTimes();
   result.latency_ms = -1;

@@ -39,8 +39,10 @@ struct FrameResult {
   Matrix6d covariance = Matrix6d::Zero(), world_covariance = Matrix6d::Zero();
   KeyframeId reference = -1;  // the keyframe that carries this frame's final pose, or -1
   Pose reference_T_camera;
-  int tracked_points = 0;   // points followed in the image
-  int mapped_points = 0;    // map points that agree with the pose
+  int tracked_points = 0;  // points followed in the image
+  int mapped_points = 0;   // map points that agree with the pose
+  // How many times as far as presumed of a good camera the map points in view erred, in this frame alone; 0: too few.
+  double measured_noise = 0;
   double noise_factor = 1;  // how many times as far as presumed of a good camera measurements err (measured_noise.h)
   StageTimes times;
   double latency_ms = -1;  // of a live run: from the frame's handing over by capture to its pose; negative: not known

@@ -43,12 +43,12 @@ void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages
   }
   const Pose camera_T_world = moving.world_T_camera.inverse();
   const auto by_id = [](const Track& a, const Track& b) { return a.id < b.id; };
-  for (const FoundPoint& found :
-       searchMapPoints(camera, points, images, edges, moving, options.search, memory)) {
+  for (const FoundPoint& found : searchMapPoints(camera, points, images, edges, moving, options.search, memory)) {
     if (tracks.size() >= most) break;
     const SearchPoint& point = points[found.index];
     const Measurement measurement = measurementOf(point, found);
-    const Eigen::Vector2d error = projectToRow(camera, moving.twist, camera_T_world * point.position) - measurement.pixel;
+    const Eigen::Vector2d error =
+        projectToRow(camera, moving.twist, camera_T_world * point.position) - measurement.pixel;
     if (std::abs(measurement.normal.dot(error)) > options.outlier_px) continue;
     if (nearTrack(tracks, found.pixel, static_cast<float>(options.spacing))) continue;
     const ViewPoint& view_point = *findPoint(view, point.id);

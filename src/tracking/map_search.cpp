@@ -130,8 +130,8 @@ FoundPoints findVisiblePoints(const SearchPoints& points, const VisiblePoints& v
 FoundPoints searchMapPoints(const Camera& camera, const SearchPoints& points, const FrameImages& current,
                             const EdgeMap& edges, const MovingCamera& moving, const MapSearchOptions& options,
                             std::pmr::memory_resource* memory) {
-  return findVisiblePoints(points, visiblePoints(camera, points, moving, options, memory), current, edges,
-                           options, memory);
+  return findVisiblePoints(points, visiblePoints(camera, points, moving, options, memory), current, edges, options,
+                           memory);
 }
 
 Measurement measurementOf(const SearchPoint& point, const FoundPoint& found) {

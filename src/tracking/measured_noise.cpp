@@ -32,11 +32,12 @@ NoiseEvidence noiseEvidence(const std::pmr::vector<double>& errors_across, std::
   return evidence;
 }
 
+bool saysSomething(const NoiseEvidence& evidence) {
+  return evidence.points >= fewest_points && std::isfinite(evidence.ratio);
+}
+
 double MeasuredNoise::observe(const NoiseEvidence& evidence) {
-  const bool says_something = evidence.points >= fewest_points &&
-                              evidence.share_within_12_sigma >= options_.least_share_within_12_sigma &&
-                              std::isfinite(evidence.ratio);
-  if (!says_something) return 1;
+  if (!saysSomething(evidence) || evidence.share_within_12_sigma < options_.least_share_within_12_sigma) return 1;
   const double before = factor_;
   const double share = std::max(share_of_step, 1.0 / ++observed_);
   const double step = 1 + share * (std::min(evidence.ratio, largest_ratio) - 1);

@@ -30,6 +30,9 @@ struct NoiseEvidence {
 // deviations. The ratio is that of a quantile low enough that what moves by itself hardly counts.
 NoiseEvidence noiseEvidence(const std::pmr::vector<double>& errors_across, std::pmr::memory_resource* memory);
 
+// False where there are too few points.
+bool saysSomething(const NoiseEvidence& evidence);
+
 // Followed slowly from frame to frame.
 class MeasuredNoise {
  public:

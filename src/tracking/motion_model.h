@@ -22,8 +22,8 @@ class MotionModel {
   // Nothing is known of the motion: the camera is taken to stand.
   void forget();
 
-  // How `last` moved as it was read, and the frame to come will: the poses tell it. Without a map that stands, poses are
-  // too rough to tell how the motion changes.
+  // How `last` moved as it was read, and the frame to come will: the poses tell it. Without a map that stands, poses
+  // are too rough to tell how the motion changes.
   RowMotion whileRowsAreRead(const TimedCamera& last, std::int64_t time_ns, bool map_stands) const;
 
   // world_T_camera at `time_ns`, after `last`. After a gap the camera has rather stopped than flown on.

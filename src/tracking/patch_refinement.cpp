@@ -12,7 +12,8 @@ namespace {
 enum class Refinement { refined, unchanged, lost };
 
 Refinement refine(const Camera& camera, const MapView& view, const FrameImages& images, const Pose& camera_T_world,
-                  const Twist& twist, double scene_depth, const RefinementOptions& options, AscendingPoints& points, Track& track) {
+                  const Twist& twist, double scene_depth, const RefinementOptions& options, AscendingPoints& points,
+                  Track& track) {
   const ViewKeyframe* keyframe = view.keyframes.find(track.keyframe);
   if (!track.keyframe_images || !keyframe) {
     return Refinement::unchanged;
@@ -44,8 +45,8 @@ Refinement refine(const Camera& camera, const MapView& view, const FrameImages& 
 
 }  // namespace
 
-Eigen::Matrix2f keyframeWarp(const Camera& camera, const KeyframeToCamera& motion, const Eigen::Vector2f& keyframe_pixel,
-                             double depth) {
+Eigen::Matrix2f keyframeWarp(const Camera& camera, const KeyframeToCamera& motion,
+                             const Eigen::Vector2f& keyframe_pixel, double depth) {
   constexpr double step = 4;  // [px]
   const Eigen::Vector2d centre = keyframe_pixel.cast<double>(), right(step, 0), down(0, step);
   const std::array<Eigen::Vector2d, 4> around = {centre + right, centre - right, centre + down, centre - down};
@@ -54,7 +55,8 @@ Eigen::Matrix2f keyframeWarp(const Camera& camera, const KeyframeToCamera& motio
   std::array<Eigen::Vector2d, 4> there;
   for (std::size_t i = 0; i < there.size(); ++i) {
     const Ray ray = rayOfRow(camera, motion.keyframe_twist, around[i].y(), bearings[i]);
-    there[i] = projectToRow(camera, motion.camera_twist, motion.camera_T_keyframe * (ray.origin + ray.direction * depth));
+    there[i] =
+        projectToRow(camera, motion.camera_twist, motion.camera_T_keyframe * (ray.origin + ray.direction * depth));
   }
   Eigen::Matrix2d camera_by_keyframe;
   camera_by_keyframe.col(0) = (there[0] - there[1]) / (2 * step);
@@ -69,7 +71,9 @@ void refineTracks(const Camera& camera, const MapView& view, const FrameImages& 
   AscendingPoints points(view);
   std::size_t kept = 0;
   for (Track& track : tracks) {
-    if (refine(camera, view, images, camera_T_world, moving.twist, scene_depth, options, points, track) == Refinement::lost) continue;
+    if (refine(camera, view, images, camera_T_world, moving.twist, scene_depth, options, points, track) ==
+        Refinement::lost)
+      continue;
     if (&tracks[kept] != &track) tracks[kept] = std::move(track);
     ++kept;
   }

@@ -105,7 +105,8 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
   const ResectioningResult resectioned =
       resectionBySamples(points, bearings, 3.0 / meanFocalLength(camera), /*seed=*/1, half_agree ? 50 : 200, memory);
   if (!resectioned.found) return pose;
-  const PoseResult second = adjustPose(camera, resectioned.camera_T_world.inverse(), observations, options, memory, motion);
+  const PoseResult second =
+      adjustPose(camera, resectioned.camera_T_world.inverse(), observations, options, memory, motion);
   const double fewest = half_agree ? clearly_more * agree : agree;
   if (second.converged && second.inlier_count > fewest) {
     pose.result = second;

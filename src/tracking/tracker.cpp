@@ -100,7 +100,7 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   if (!mapStands() && !last_.isThere()) return startMap("first frame of the map", work);
 
   bool located = locate(work);  // P5, P6, P16
-  measureNoise();
+  measureNoise(work.result);
   if (!mapStands() && (!located || tooFewAreLeft())) {
     return startMap("starting anew: too few of the first frame's points are left", work);  // P13
   }
@@ -130,7 +130,8 @@ bool Tracker::locate(Work& work) {
 }
 
 // What is measured from now on, and what was measured already and is looked at again, counts as it says.
-void Tracker::measureNoise() {
+void Tracker::measureNoise(FrameResult& result) {
+  if (saysSomething(frame_.noise)) result.measured_noise = noise_.factor() * frame_.noise.ratio;
   const double change = noise_.observe(frame_.noise);
   if (change == 1) return;
   preparation_.setNoiseFactor(noise_.factor());
@@ -224,8 +225,8 @@ void Tracker::reuseMapWhenDue(Work& work) {
 
 void Tracker::reuseMap(FollowedFrame& frame) {
   scratch_.release();
-  reuseMapPoints(camera_, view_, *frame.images, *frame.edges, {frame.world_T_camera, frame.twist}, most_tracks_, options_.map_reuse,
-                 frame.tracks, &scratch_);
+  reuseMapPoints(camera_, view_, *frame.images, *frame.edges, {frame.world_T_camera, frame.twist}, most_tracks_,
+                 options_.map_reuse, frame.tracks, &scratch_);
 }
 
 void Tracker::tell(Work& work) {

@@ -104,7 +104,7 @@ class Tracker {
   TimedCamera lastCamera() const { return {last_.images->time_ns, last_.world_T_camera}; }
 
   bool locate(Work& work);
-  void measureNoise();
+  void measureNoise(FrameResult& result);
   bool isToBeginWorld(std::int64_t time_ns) const;
   void beginWorld();
   bool startMap(const char* reason, Work& work);

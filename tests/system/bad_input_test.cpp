@@ -261,6 +261,7 @@ TEST_F(BadInput, SimulateLeavesNothingHalfWritten) {
   expectRefusal(runProgramAfter("trap '' XFSZ; ulimit -f 8", arguments), {result(), "cannot be written"});
   expectRefusal(runProgram({"simulate", "moon", "--output", result()}), {"moon"});
   expectRefusal(runProgram({"simulate", "room", "--frames", "-3", "--output", result()}), {"frames"});
+  expectRefusal(runProgram({"simulate", "room", "--readout", "34", "--output", result()}), {"readout", "34 ms"});
   expectRefusal(runProgram({"simulate", "room", "--frames", "2", "--output", sequence()}), {sequence(), "not empty"});
 }
 

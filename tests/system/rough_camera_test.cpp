@@ -1,4 +1,4 @@
-// Cameras as they are: a calibration that is roughly right, light that fails. Rolling shutters: see bad_frames.
+// Cameras as they are: a calibration that is roughly right, light that fails, rows that are read one after another.
 // Poses go on, and what is stated of them holds. The sequences are made by ctest (see CMakeLists.txt).
 #include <gtest/gtest.h>
 
@@ -45,6 +45,43 @@ TEST(RoughCamera, NoiseThatRisesOnTheWay) {
   const std::string sequence =
       EditedSequence().add(place("parlour"), 0, 119).add(place("parlour_noisy"), 120, 239).write(folder, "sequence");
   expectPosesGoOn(replayed(sequence, folder.path("result")), sequence, 0.06);
+}
+
+double meanError(const ReplayedRun& result, const std::string& sequence) {
+  return absoluteError(readTrajectory(result.folder + "/trajectory.txt"), readTrajectory(sequence + "/groundtruth.txt"),
+                       Alignment::similarity, 0.001)
+      .translation.rmse;
+}
+
+TEST(RoughCamera, RowsThatAreReadOneAfterAnother) {
+  const TemporaryFolder folder;
+  const std::string sequence = place("parlour_rolling");
+  const ReplayedRun with = replayed(sequence, folder.path("with"));
+  expectPosesGoOn(with, sequence, 0.08);
+  folder.write("global.yaml", "camera: {readout: 0}\n");
+  const ReplayedRun without = replayed(sequence, folder.path("without"), {"--config", folder.path("global.yaml")});
+  ASSERT_EQ(without.outcome.exit_code, 0) << without.outcome.messages;
+  EXPECT_LT(meanError(with, sequence), 0.5 * meanError(without, sequence));
+}
+
+TEST(RoughCamera, TheReadoutIsFoundByWhatFitsBest) {
+  const Outcome found = runProgram({"calibrate", "--readout", place("parlour_rolling")});
+  ASSERT_EQ(found.exit_code, 0) << found.messages;
+  const std::regex line("readout: ([-0-9.]+)   # \\[s\\], \\+- ([0-9.]+);");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(found.output, match, line)) << found.output;
+  EXPECT_NEAR(std::stod(match[1]), 0.024, 0.004);
+  EXPECT_LT(std::stod(match[2]), 0.004);
+}
+
+TEST(RoughCamera, AReadoutLongerThanTheTimeBetweenFramesIsRefused) {
+  const TemporaryFolder folder;
+  folder.write("long.yaml", "camera: {readout: 0.05}\n");
+  const ReplayedRun result =
+      replayed(place("parlour_rolling"), folder.path("result"), {"--config", folder.path("long.yaml")});
+  EXPECT_EQ(result.outcome.exit_code, 2);
+  EXPECT_NE(result.outcome.messages.find("readout is 0.05 s, but a frame comes every 0.0333 s"), std::string::npos)
+      << result.outcome.messages;
 }
 
 }  // namespace

@@ -50,9 +50,10 @@ INSTEAD = {
         SYNOPSIS, ["edgeslam report before after", "edgeslam report before after result --output three.html",
                    "edgeslam report all --output all.html"]),
     "edgeslam simulate SCENE --output DIR [--frames N] [--seed N] [--fps F] [--width PX] [--height PX] [--fisheye] "
-    "[--exposure MS] [--noise GREY] [--speed FACTOR] [--cover|--shake|--still|--turn FIRST:COUNT] [--force]": Instead(
-        SYNOPSIS, [f"edgeslam simulate {scene} --output made --seed 2 --fps 20 {SMALL} --fisheye --exposure 2 --noise 3 "
-                   "--speed 2 --cover 0:1 --shake 1:1 --still 2:1 --turn 2:1 --force"
+    "[--exposure MS] [--readout MS] [--noise GREY] [--speed FACTOR] [--cover|--shake|--still|--turn FIRST:COUNT] "
+    "[--force]": Instead(
+        SYNOPSIS, [f"edgeslam simulate {scene} --output made --seed 2 --fps 20 {SMALL} --fisheye --exposure 2 "
+                   "--readout 24 --noise 3 --speed 2 --cover 0:1 --shake 1:1 --still 2:1 --turn 2:1 --force"
                    for scene in ("panels", "panels_textured", "room", "corridor", "corridor_tiled")]),
     "edgeslam calibrate board --columns N --rows N --square LENGTH --output PDF "
     "[--type chessboard|charuco|aprilgrid] [--paper A4]": Instead(
@@ -65,6 +66,9 @@ INSTEAD = {
          "pinhole_radial_tangential --force",
          "edgeslam calibrate --camera board_camera --board chessboard:9x6:25mm --output second.yaml --seconds 60",
          "edgeslam calibrate --config board_robot.yaml --board chessboard:9x6:25mm --output third.yaml"]),
+    "edgeslam calibrate --readout RECORDING": Instead(
+        PLACEHOLDERS + "; of this one's few frames none tells the readout", ["edgeslam calibrate --readout my_recording"],
+        exit_code=1, says="does not tell the readout"),
     "edgeslam check-config FILE | --print-default | --print-expert": Instead(
         SYNOPSIS, ["edgeslam check-config my_robot.yaml", "edgeslam check-config --print-default",
                    "edgeslam check-config --print-expert"]),

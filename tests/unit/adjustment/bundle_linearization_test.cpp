@@ -21,7 +21,8 @@ struct Linearized {
 };
 
 // Fixed and free cameras and points, priors, and an observation given twice.
-Linearized linearized(const BundleSceneOptions& options, double damping, std::uint64_t seed, int most_dense = 30) {
+Linearized linearized(const BundleSceneOptions& options, double damping, std::uint64_t seed, int most_dense = 30,
+                      bool rolling = false) {
   Random random(seed);
   Linearized made;
   BundleScene& scene = made.scene = makeBundleScene(random, options);
@@ -31,7 +32,12 @@ Linearized linearized(const BundleSceneOptions& options, double damping, std::ui
   for (std::size_t i = 1; i < problem.points.size(); i += 7) problem.points[i].prior_sigma = 0.1;
   problem.observations.push_back(problem.observations[problem.observations.size() / 2]);
   problem.observations.back().measurement.pixel.x() += 1;
-  structureBundle(problem, most_dense, made.structure);
+  if (rolling) {
+    scene.camera.readout_s = 0.03;
+    for (BundleCamera& c : problem.cameras) c.twist << uniformVector(random, 0.5), uniformVector(random, 0.5);
+    for (BundlePoint& p : problem.points) p.host_origin = uniformVector(random, 0.02);
+  }
+  structureBundle(scene.camera, problem, most_dense, made.structure);
   for (const BundleCamera& c : problem.cameras) {
     made.state.rotations.push_back(c.world_T_camera.rotation);
     made.state.frames.push_back(cameraFrame(c.world_T_camera));
@@ -66,9 +72,11 @@ Eigen::VectorXd residualsAt(const Linearized& from, const BundleState& state) {
                        Eigen::Vector2d& residual) {
     const StructuredPoint& p = from.structure.points[i];
     const CameraFrame& host = at.frames[static_cast<std::size_t>(p.host)];
-    const CameraFrame& target = at.frames[static_cast<std::size_t>(o.target)];
+    CameraFrame row, from_row = host;
+    const CameraFrame& target = targetFrame(from.structure, at, o, row);
+    from_row.centre += host.world_R_camera * p.host_origin;
     return sightResidual(from.scene.camera, o.measured, target,
-                         sight(host, target, p.host_bearing, at.inverse_depths[i]), residual, nullptr);
+                         sight(from_row, target, p.host_bearing, at.inverse_depths[i]), residual, nullptr);
   };
   for (std::size_t i = 0; i < from.structure.points.size(); ++i) {
     const StructuredPoint& p = from.structure.points[i];
@@ -111,7 +119,7 @@ TEST_P(BundleLinearizationOfModel, StepMatchesTheWholeSystemFromDifferences) {
       options.cameras = 4;
       options.points = 40;
       options.noise = 1;
-      Linearized made = linearized(options, damping, 3, most_dense);
+      Linearized made = linearized(options, damping, 3, most_dense, damping == 1.0);
       EXPECT_EQ(made.structure.dense, most_dense > 0);
       const Eigen::MatrixXd jacobian = numericJacobian(made);
       const Eigen::VectorXd gradient = jacobian.transpose() * residualsAt(made, made.state);
@@ -155,7 +163,7 @@ TEST(BundleStructure, KeepsWhatTakesPartAndNamesItsBlocks) {
     BundleProblem problem = scene.truth;
     problem.points[3].fixed = true;
     BundleStructure structure;
-    structureBundle(problem, most_dense, structure);
+    structureBundle(scene.camera, problem, most_dense, structure);
     EXPECT_EQ(structure.camera_of_unknown, (std::vector<int>{2, 3, 4, 5, 6, 7}));
     EXPECT_EQ(structure.points.size(), problem.points.size());
     for (const StructuredPoint& p : structure.points) {

@@ -91,6 +91,41 @@ TEST_P(PoseAdjustmentOfModel, EdgesOfEveryDirectionRecoverThePose) {
   }
 }
 
+// A camera that moves as before sees each point from where it is as it reads the point's row.
+TEST_P(PoseAdjustmentOfModel, RowsReadOneAfterAnotherRecoverThePoseAndTheMotion) {
+  Random random(21);
+  for (int run = 0; run < 50; ++run) {
+    TrialOptions options;
+    options.noise = 0;
+    options.model = GetParam();
+    Trial trial = makeTrial(random, options);
+    trial.camera.readout_s = run % 2 == 0 ? 0.024 : -0.024;
+    Twist twist;
+    twist << uniformVector(random, 0.5), uniformVector(random, 0.5);
+    for (PoseObservation& o : trial.observations) {
+      const Eigen::Vector2d& pixel = o.measurement.pixel;
+      o.point = trial.truth * rowPose(trial.camera, twist, pixel.y()) *
+                (bearing(trial.camera, pixel) * uniform(random, 1, 6));
+    }
+    RowMotion motion;
+    motion.seconds = 1.0 / 30;
+    motion.world_T_before = trial.truth * movedFor(twist, motion.seconds).inverse();
+    motion.before = twistBetween(motion.world_T_before, trial.truth, motion.seconds);
+    motion.is_known_from_before = run % 3 == 0;
+    const Pose start = perturbed(random, trial.truth, 0.02, 0.02);
+    const PoseResult result =
+        adjustPose(trial.camera, start, trial.observations, {}, std::pmr::get_default_resource(), motion);
+    ASSERT_TRUE(result.converged);
+    EXPECT_LT(distance(result.world_T_camera, trial.truth), 1e-3);
+    EXPECT_LT(rotationAngle(result.world_T_camera.rotation, trial.truth.rotation), 1e-3);
+    EXPECT_LT((result.twist - twist).norm(), 0.05);
+    EXPECT_EQ(result.inlier_count, 200);
+    Camera global = trial.camera;
+    global.readout_s = 0;
+    EXPECT_GT(adjustPose(global, start, trial.observations, {}).rms, 20 * result.rms);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, PoseAdjustmentOfModel,
                          testing::Values(CameraModel::pinhole_radial_tangential, CameraModel::kannala_brandt));
 

@@ -115,6 +115,41 @@ TEST_P(ReprojectionOfModel, SightAndPoseResidualsAgree) {
   }
 }
 
+TEST_P(ReprojectionOfModel, RowDerivativesMatchDifferences) {
+  Random random(12);
+  const Camera camera = testCamera(GetParam());
+  for (int run = 0; run < 200; ++run) {
+    const WhitenedPixel measured = randomWhitenedPixel(random, camera);
+    const Pose pose = forwardPose(random);
+    const double seconds = uniform(random, -0.02, 0.02);
+    Twist twist;
+    twist << uniformVector(random, 1), uniformVector(random, 3);
+    const Eigen::Vector3d point = pose * (bearing(camera, randomPixel(random, camera)) * uniform(random, 1, 5));
+    const auto at = [&](const Pose& moved, const Twist& moving) {
+      Eigen::Vector2d residual = Eigen::Vector2d::Zero();
+      Matrix26d by_pose, by_twist;
+      EXPECT_TRUE(
+          rowResidual(camera, measured, cameraFrame(moved), moving, seconds, point, residual, by_pose, by_twist));
+      return residual;
+    };
+    Eigen::Vector2d residual;
+    Matrix26d by_pose, by_twist, numeric_by_twist;
+    ASSERT_TRUE(rowResidual(camera, measured, cameraFrame(pose), twist, seconds, point, residual, by_pose, by_twist));
+    EXPECT_LT((by_pose - numericByPose(pose, [&](const Pose& moved) { return at(moved, twist); })).norm(),
+              1e-5 * (1 + by_pose.norm()));
+    constexpr double kStep = 1e-5;
+    for (int k = 0; k < 6; ++k) {
+      const Twist change = kStep * Twist::Unit(k);
+      numeric_by_twist.col(k) = (at(pose, twist + change) - at(pose, twist - change)) / (2 * kStep);
+    }
+    EXPECT_LT((by_twist - numeric_by_twist).norm(), 1e-5 * (1 + by_twist.norm()));
+    const Pose in_row = pose * movedFor(twist, seconds);
+    Eigen::Vector2d as_seen_there;
+    ASSERT_TRUE(poseResidual(camera, measured, cameraFrame(in_row), point, as_seen_there, nullptr));
+    EXPECT_LT((residual - as_seen_there).norm(), 1e-9 * (1 + residual.norm()));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, ReprojectionOfModel,
                          testing::Values(CameraModel::pinhole_radial_tangential, CameraModel::kannala_brandt));
 

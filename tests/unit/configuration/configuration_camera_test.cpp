@@ -13,6 +13,7 @@ const std::string calibration =
 Configuration configurationOf(const std::string& text) {
   const TemporaryFolder folder;
   folder.write("cameras/known.yaml", "width: 640\nheight: 480\nfx: 500\nfy: 501\ncx: 320\ncy: 240\nk1: 0.1\n");
+  folder.write("cameras/rolling.yaml", "width: 64\nheight: 48\nfx: 50\nfy: 50\ncx: 32\ncy: 24\nreadout: 0.03\n");
   folder.write("cameras/bad.yaml", "width: 640\nheight: 480\nfx: -500\nfy: 501\ncx: 320\ncy: 240\n");
   return readConfiguration(folder.write("file.yaml", text));
 }
@@ -54,12 +55,74 @@ TEST(ConfigurationCamera, ReadsACalibrationFileRelativeToItself) {
   EXPECT_EQ(read.camera->fy, 501);
 }
 
+TEST(ConfigurationCamera, ReadsTheReadoutOfAnInlineCalibration) {
+  const Configuration read = configurationOf("camera: {" + calibration + ", readout: -0.016}\n");
+  ASSERT_TRUE(read.camera);
+  EXPECT_EQ(read.camera->readout_s, -0.016);
+  EXPECT_EQ(configurationOf("camera: {" + calibration + "}\n").camera->readout_s, 0);
+  EXPECT_EQ(configurationOf(formatConfiguration(read)).camera, read.camera);
+}
+
+TEST(ConfigurationCamera, AReadoutOverrulesThatOfACalibrationFile) {
+  EXPECT_EQ(configurationOf("camera: {calibration: cameras/rolling.yaml}\n").camera->readout_s, 0.03);
+  const Configuration read = configurationOf("camera: {calibration: cameras/rolling.yaml, readout: 0.02}\n");
+  EXPECT_EQ(read.camera->width, 64);
+  EXPECT_EQ(read.camera->readout_s, 0.02);
+  EXPECT_EQ(configurationOf("camera: {calibration: cameras/rolling.yaml, readout: 0}\n").camera->readout_s, 0);
+  EXPECT_EQ(configurationOf("camera: {calibration: cameras/known.yaml, readout: 0.2}\n").camera->readout_s, 0.2);
+}
+
+TEST(ConfigurationCamera, AReadoutByItselfIsOfWhateverCalibrationIsTaken) {
+  const Configuration read =
+      configurationOf("camera: {readout: 0.02, body_T_camera: {translation: [1, 2, 3], quaternion: [1, 0, 0, 0]}}\n");
+  EXPECT_FALSE(read.camera);
+  Camera beside;
+  beside.readout_s = 0.01;
+  EXPECT_EQ(withReadout(beside, read).readout_s, 0.02);
+  EXPECT_EQ(withReadout(beside, Configuration()).readout_s, 0.01);
+  const Configuration again = configurationOf(formatConfiguration(read));
+  EXPECT_FALSE(again.camera);
+  EXPECT_EQ(again.readout_s, 0.02);
+}
+
+// Of two configurations, of which one includes the other, the latter's calibration or readout counts.
+double includedReadout(const std::string& base, const std::string& text) {
+  const TemporaryFolder folder;
+  folder.write("known.yaml", "width: 640\nheight: 480\nfx: 500\nfy: 501\ncx: 320\ncy: 240\n");
+  folder.write("base.yaml", base);
+  const Configuration read = readConfiguration(folder.write("file.yaml", "include: base.yaml\n" + text));
+  EXPECT_EQ(configurationOf(formatConfiguration(read)).camera, read.camera);
+  return read.camera.value().readout_s;
+}
+
+TEST(ConfigurationCamera, AReadoutBesideACalibrationIsOfThatOne) {
+  const std::string known = "camera: {calibration: known.yaml}\n", alone = "camera: {readout: 0.02}\n";
+  const std::string both = "camera: {calibration: known.yaml, readout: 0.01}\n";
+  EXPECT_EQ(includedReadout(known, alone), 0.02);
+  EXPECT_EQ(includedReadout(alone, known), 0.02);
+  EXPECT_EQ(includedReadout(both, alone), 0.02);
+  EXPECT_EQ(includedReadout(alone, both), 0.01);
+  EXPECT_EQ(includedReadout(both, known), 0);
+}
+
+TEST(ConfigurationCamera, WrongReadoutsAreRefused) {
+  const std::string beside_it = calibration + ", readout: ", beside_file = "calibration: cameras/known.yaml, readout: ";
+  for (const std::string& begin : {std::string("readout: "), beside_it, beside_file}) {
+    for (const char* value : {"0.21", "-0.21", ".nan", "nan", ".inf", "20ms", "[0.02]", "~"}) {
+      expectRefused("camera: {" + begin + value + "}\n", "file.yaml:1: camera.readout: ");
+    }
+    expectRefused("camera: {" + begin + "20}\n", "-0.2 to 0.2 s");
+  }
+}
+
 TEST(ConfigurationCamera, WrongCalibrationsAreRefused) {
   expectRefused("camera: {width: 640}\n", "camera.height is missing");
   expectRefused("camera: {" + calibration + ", k4: 1}\n", "camera.k4 is no coefficient");
   expectRefused("camera: {" + calibration + ", model: fish}\n", "camera.model: expected");
   expectRefused("camera: {" + calibration + ", colour: 1}\n", "file.yaml:1: camera.colour is not a key");
   expectRefused("camera: {" + calibration + ", calibration: cameras/known.yaml}\n", "in a file already");
+  expectRefused("camera: {calibration: cameras/known.yaml, readout: 0.02, k1: 0.1}\n",
+                "camera.k1: the calibration is in");
   for (const char* value : {"-500", "0", ".nan", ".inf", "wide", "[500]", "~"}) {
     expectRefused(std::string("camera: {width: 640, height: 480, fx: ") + value + ", fy: 500, cx: 320, cy: 240}\n",
                   "file.yaml:1: camera.fx: ");

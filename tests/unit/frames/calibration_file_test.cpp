@@ -90,6 +90,34 @@ TEST(CalibrationFile, ReadsKalibrChains) {
   EXPECT_EQ(read(replaced(kalibr, "equidistant", "radtan")).model, CameraModel::pinhole_radial_tangential);
 }
 
+TEST(CalibrationFile, ReadsTheReadoutOfARollingShutter) {
+  EXPECT_EQ(read(own).readout_s, 0);
+  EXPECT_EQ(read(own + "readout: 0.02\n").readout_s, 0.02);
+  EXPECT_EQ(read(own + "readout: -0.2\n").readout_s, -0.2);
+  expectRefused(own + "readout: 0.201\n", "c.yaml:13", "readout", "-0.2 to 0.2");
+  expectRefused(own + "readout: -20\n", "c.yaml:13", "readout", "-0.2 to 0.2");
+  expectRefused(own + "readout: .nan\n", "c.yaml:13", "'readout'", "finite");
+  expectRefused(own + "readout: .inf\n", "c.yaml:13", "'readout'", "finite");
+  expectRefused(own + "readout: 20ms\n", "c.yaml:13", "'readout'", "'20ms'");
+  expectRefused(own + "readuot: 0.02\n", "c.yaml:13", "'readout' meant");
+}
+
+// Kalibr's delay is from row to row.
+TEST(CalibrationFile, ReadsTheLineDelayOfKalibrChains) {
+  EXPECT_EQ(read(kalibr).readout_s, 0);
+  EXPECT_DOUBLE_EQ(read(kalibr + "  line_delay: 4.0e-05\n").readout_s, 4.0e-05 * 511);
+  expectRefused(kalibr + "  line_delay: 0.02\n", "c.yaml:9", "readout", "-0.2 to 0.2");
+  expectRefused(kalibr + "  line_delay: .nan\n", "c.yaml:9", "'line_delay'", "finite");
+}
+
+TEST(CalibrationFile, IsReadBackToTheLastBitAfterItWasWritten) {
+  for (const char* readout : {"", "readout: 0.0181000000000000013\n", "readout: -1e-300\n"}) {
+    const Camera camera = read(own + readout);
+    EXPECT_EQ(read(formatCalibrationFile(camera)), camera) << readout;
+  }
+  EXPECT_EQ(formatCalibrationFile(read(own)).find("readout"), std::string::npos);
+}
+
 TEST(CalibrationFile, ReadsEurocSensors) {
   const Camera camera = read(euroc);
   EXPECT_EQ(camera.model, CameraModel::pinhole_radial_tangential);

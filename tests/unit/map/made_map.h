@@ -54,6 +54,7 @@ inline SavedMap madeMap(int width, int height) {
   saved.camera.cx = 0.5 * width - 1.0 / 3;
   saved.camera.cy = 0.5 * height;
   saved.camera.distortion = {-0.01, 1e-300, -0.0, 0.25, 0};
+  saved.camera.readout_s = 0.1 / 3;
   const PointId large = 40'000'000'000;
   for (const KeyframeId id : {0, 1, 4, 9}) {
     Keyframe keyframe;
@@ -62,6 +63,7 @@ inline SavedMap madeMap(int width, int height) {
     keyframe.time_ns = 1'700'000'000'000'000'000 + 33'333'333 * id;
     keyframe.world_T_camera.rotation = Eigen::Quaterniond(0.9, 0.1 * id, -0.2, 0.3).normalized();
     keyframe.world_T_camera.translation = {0.1 * id, -0.0, 5e-324};
+    keyframe.twist << 0.01 * id, -0.0, 1.0 / 3, 5e-324, -0.3, 1e-5;
     keyframe.reason = id == 0 ? "" : "rotation by 12 deg";
     for (const PointId point : {PointId{2}, PointId{3}, PointId{5}, large}) {
       if (id == 9 && point == 3) continue;

@@ -64,6 +64,10 @@ TEST(MapCheck, Cameras) {
       {"camera: ", "principal point", [](SavedMap& s) { s.camera.cx = infinity; }},
       {"camera: ", "principal point", [](SavedMap& s) { s.camera.cy = not_a_number; }},
       {"camera: ", "distortion", [](SavedMap& s) { s.camera.distortion[4] = not_a_number; }},
+      {"camera: ", "readout", [](SavedMap& s) { s.camera.readout_s = not_a_number; }},
+      {"camera: ", "readout", [](SavedMap& s) { s.camera.readout_s = infinity; }},
+      {"camera: ", "readout", [](SavedMap& s) { s.camera.readout_s = 0.201; }},
+      {"camera: ", "readout", [](SavedMap& s) { s.camera.readout_s = -0.201; }},
   });
 }
 
@@ -81,6 +85,9 @@ TEST(MapCheck, Keyframes) {
       {"keyframe 4: ", "unit quaternion", [&](SavedMap& s) { keyframe(s).world_T_camera.rotation.x() = not_a_number; }},
       {"keyframe 4: ", "position", [&](SavedMap& s) { keyframe(s).world_T_camera.translation.z() = -infinity; }},
       {"keyframe 4: ", "position", [&](SavedMap& s) { keyframe(s).world_T_camera.translation.y() = 1e300; }},
+      {"keyframe 4: ", "motion", [&](SavedMap& s) { keyframe(s).twist(0) = not_a_number; }},
+      {"keyframe 4: ", "motion", [&](SavedMap& s) { keyframe(s).twist(2) = 1e300; }},
+      {"keyframe 4: ", "motion", [&](SavedMap& s) { keyframe(s).twist(5) = -infinity; }},
       {"keyframe 4: ", "reason", [&](SavedMap& s) { keyframe(s).reason = "\x1b[2J"; }},
       {"keyframe 4: ", "reason", [&](SavedMap& s) { keyframe(s).reason = "\xC3("; }},
       {"keyframe 4: ", "images' frame or time",

@@ -97,14 +97,14 @@ TEST(MapFile, GivesBackRecordsOfTheLeastLength) {
 // The layout as the header tells it, written out.
 TEST(MapFile, AnEmptyMapIsAHeaderACameraAndTwoEmptyLists) {
   SavedMap saved;
-  saved.camera = {CameraModel::kannala_brandt, 640, 480, 1.5, 2, 1, 0, {0, 0, 0, 0, -2}};
+  saved.camera = {CameraModel::kannala_brandt, 640, 480, 1.5, 2, 1, 0, {0, 0, 0, 0, -2}, 0.125};
   const std::string zero = littleEndian(0, 8), one = "\0\0\0\0\0\0\xF0\x3F"s, two = "\0\0\0\0\0\0\0\x40"s;
   const std::string content = littleEndian(1, 4) + littleEndian(640, 4) + littleEndian(480, 4) +
                               "\0\0\0\0\0\0\xF8\x3F"s + two + one + zero + zero + zero + zero + zero +
-                              "\0\0\0\0\0\0\0\xC0"s;
+                              "\0\0\0\0\0\0\0\xC0"s + "\0\0\0\0\0\0\xC0\x3F"s;
   const std::string payload =
-      "CAMR" + littleEndian(84, 8) + content + "KEYF" + littleEndian(8, 8) + zero + "PNTS" + littleEndian(8, 8) + zero;
-  const std::string header = "EDGESLAM MAP\r\n\x1a\n" + littleEndian(2, 4) + littleEndian(payload.size(), 8);
+      "CAMR" + littleEndian(92, 8) + content + "KEYF" + littleEndian(8, 8) + zero + "PNTS" + littleEndian(8, 8) + zero;
+  const std::string header = "EDGESLAM MAP\r\n\x1a\n" + littleEndian(3, 4) + littleEndian(payload.size(), 8);
   const std::string bytes = encodeMap(saved);
   EXPECT_EQ(bytes.substr(0, bytes.size() - checksum_size), header + payload);
   EXPECT_EQ(bytes, sealed(bytes));
@@ -125,6 +125,7 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
   keyframe.frame_index = 12;
   keyframe.time_ns = -13;
   keyframe.world_T_camera = {Eigen::Quaterniond(14, 15, 16, 17), {18, 19, 20}};
+  keyframe.twist << 32, 33, 34, 35, 36, 37;
   keyframe.reason = "turn";
   keyframe.observations = {observation};
   MapPoint point{5, 21, {22, 23, 24}, 25, 26, false, 27, 28, 29, {30, 31}};
@@ -137,13 +138,14 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
                                littleEndian(0xFFFFFFFF, 4) + littleEndian(10, 4);
   const std::string keyframes = littleEndian(1, 8) + littleEndian(11, 4) + littleEndian(3, 4) + littleEndian(12, 8) +
                                 littleEndian(~12ULL, 8) + littleEndian({14, 15, 16, 17, 18, 19, 20}) +
-                                littleEndian(4, 8) + "turn" + littleEndian(1, 8) + observed + '\0';
+                                littleEndian({32, 33, 34, 35, 36, 37}) + littleEndian(4, 8) + "turn" +
+                                littleEndian(1, 8) + observed + '\0';
   const std::string points = littleEndian(1, 8) + littleEndian(5, 8) + littleEndian(21, 4) +
                              littleEndian({22, 23, 24, 25, 26}) + '\0' + littleEndian(27, 4) + littleEndian(28, 4) +
                              littleEndian(29, 4) + littleEndian(2, 8) + littleEndian(30, 4) + littleEndian(31, 4);
   const std::string sections =
       "KEYF" + littleEndian(keyframes.size(), 8) + keyframes + "PNTS" + littleEndian(points.size(), 8) + points;
-  EXPECT_EQ(bytes.substr(payload_begin + 96, bytes.size() - payload_begin - 96 - checksum_size), sections);
+  EXPECT_EQ(bytes.substr(payload_begin + 104, bytes.size() - payload_begin - 104 - checksum_size), sections);
 }
 
 TEST(MapFile, EveryChangedBitIsTold) {
@@ -178,7 +180,7 @@ TEST(MapFile, ANewerVersionIsTold) {
   std::string bytes = encodeMap(test::madeMap(32, 24));
   overwrite(bytes, 16, littleEndian(7, 4));
   EXPECT_EQ(refusal(sealed(bytes)),
-            "hall.map: map format version 7 is newer than 2, which this program reads: use a newer edgeslam");
+            "hall.map: map format version 7 is newer than 3, which this program reads: use a newer edgeslam");
   overwrite(bytes, 16, littleEndian(0, 4));
   EXPECT_EQ(refusal(sealed(bytes)), "hall.map: there is no map format version 0");
 }
@@ -198,22 +200,69 @@ TEST(MapFile, KeepsTheWorlds) {
   EXPECT_EQ(refusal(encodeMap(saved)), "hall.map: keyframe 2: there is no such world");
 }
 
-// Which had no worlds.
-TEST(MapFile, ReadsTheFirstVersion) {
+SavedMap mapOfOneKeyframe() {
   SavedMap saved;
   saved.camera = test::madeMap(32, 24).camera;
-  saved.map.keyframes.push_back(Keyframe());
-  saved.map.keyframes.back().frame_index = 17;
-  std::string bytes = encodeMap(saved);
-  const std::size_t section = bytes.find("KEYF"), length = section + 4, record = length + 16, world = record + 4;
-  const auto content = static_cast<unsigned char>(bytes[length]) + 256U * static_cast<unsigned char>(bytes[length + 1]);
-  bytes.erase(world, 4);
-  overwrite(bytes, length, littleEndian(content - 4, 8));
+  Keyframe keyframe;
+  keyframe.world = 5;
+  keyframe.frame_index = 17;
+  keyframe.world_T_camera.translation = {1, 2, 3};
+  keyframe.twist << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6;
+  keyframe.reason = "turn";
+  saved.map.keyframes.push_back(keyframe);
+  return saved;
+}
+
+// Bytes of a section taken out, by their place in its content.
+void cut(std::string& bytes, const std::string& section, std::size_t place, std::size_t size) {
+  const std::size_t length = bytes.find(section) + 4;
+  overwrite(bytes, length, littleEndian(numberAt(bytes, length) - size, 8));
+  bytes.erase(length + 8 + place, size);
+}
+
+// Which had no readout, and no motion of a keyframe.
+std::string inTheSecondVersion(std::string bytes) {
+  cut(bytes, "CAMR", 84, 8);
+  cut(bytes, "KEYF", 8 + 80, 48);
+  overwrite(bytes, 16, littleEndian(2, 4));
+  return sealed(bytes);
+}
+
+// Which had no worlds either.
+std::string inTheFirstVersion(std::string bytes) {
+  bytes = inTheSecondVersion(bytes);
+  cut(bytes, "KEYF", 8 + 4, 4);
   overwrite(bytes, 16, littleEndian(1, 4));
-  const SavedMap read = decodeMap(sealed(bytes), "hall.map");
-  ASSERT_EQ(read.map.keyframes.size(), 1U);
-  EXPECT_EQ(read.map.keyframes.back().frame_index, 17);
-  EXPECT_EQ(read.map.keyframes.back().world, 0);
+  return sealed(bytes);
+}
+
+TEST(MapFile, ReadsTheVersionsBefore) {
+  SavedMap saved = mapOfOneKeyframe();
+  const std::string bytes = encodeMap(saved);
+  test::expectSame(saved, decodeMap(bytes, "hall.map"));
+  saved.camera.readout_s = 0;
+  saved.map.keyframes[0].twist.setZero();
+  const SavedMap second = decodeMap(inTheSecondVersion(bytes), "hall.map");
+  test::expectSame(saved, second);
+  EXPECT_EQ(second.map.keyframes[0].world, 5);
+  const SavedMap first = decodeMap(inTheFirstVersion(bytes), "hall.map");
+  test::expectSame(saved, first);
+  EXPECT_EQ(first.map.keyframes[0].world, 0);
+}
+
+// It has the fewest bytes that a keyframe ever had, which the count of keyframes is held against.
+TEST(MapFile, ReadsTheShortestKeyframeOfTheFirstVersion) {
+  SavedMap saved = mapOfOneKeyframe();
+  saved.map.keyframes[0].reason.clear();
+  EXPECT_EQ(decodeMap(inTheFirstVersion(encodeMap(saved)), "hall.map").map.keyframes.size(), 1U);
+}
+
+TEST(MapFile, KeepsTheReadoutAndTheMotionOfKeyframes) {
+  SavedMap saved = mapOfOneKeyframe();
+  saved.camera.readout_s = -0.2;
+  const SavedMap read = decodeMap(encodeMap(saved), "hall.map");
+  EXPECT_EQ(read.camera.readout_s, -0.2);
+  EXPECT_EQ(read.map.keyframes[0].twist, saved.map.keyframes[0].twist);
 }
 
 // Bytes put anywhere under a checksum that fits them: refused, or a map that keeps to every rule.
@@ -247,7 +296,7 @@ TEST(MapFile, WhateverStandsUnderAFittingChecksumIsRefusedOrAMap) {
 TEST(MapFile, LengthsAndCountsAreHeldAgainstTheBytes) {
   const std::string bytes = encodeMap(test::madeMap(32, 24));
   const std::size_t camera = payload_begin + 4, keyframes = bytes.find("KEYF") + 4, points = bytes.rfind("PNTS") + 4;
-  const std::size_t reason = keyframes + 16 + 80, image = bytes.find("\x89PNG") - 8;
+  const std::size_t reason = keyframes + 16 + 128, image = bytes.find("\x89PNG") - 8;
   for (const std::size_t place :
        {camera, keyframes, keyframes + 8, reason, reason + 8, image, points, points + 8, points + 16 + 65}) {
     const std::uint64_t right = numberAt(bytes, place);

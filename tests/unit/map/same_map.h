@@ -50,6 +50,7 @@ inline void expectSameKeyframe(const Keyframe& expected, const Keyframe& found) 
   const Pose &pose = expected.world_T_camera, &found_pose = found.world_T_camera;
   expectSameBits(pose.rotation.coeffs().data(), found_pose.rotation.coeffs().data(), 4, "rotation");
   expectSameBits(pose.translation.data(), found_pose.translation.data(), 3, "translation");
+  expectSameBits(expected.twist.data(), found.twist.data(), 6, "twist");
   ASSERT_EQ(found.observations.size(), expected.observations.size());
   for (std::size_t i = 0; i < expected.observations.size(); ++i) {
     expectSameObservation(expected.observations[i], found.observations[i]);
@@ -80,6 +81,7 @@ inline void expectSame(const SavedMap& expected, const SavedMap& found) {
   expectSameBits(&expected.camera.cx, &found.camera.cx, 1, "cx");
   expectSameBits(&expected.camera.cy, &found.camera.cy, 1, "cy");
   expectSameBits(expected.camera.distortion.data(), found.camera.distortion.data(), 5, "distortion");
+  expectSameBits(&expected.camera.readout_s, &found.camera.readout_s, 1, "readout");
   ASSERT_EQ(found.map.keyframes.size(), expected.map.keyframes.size());
   for (const Keyframe& keyframe : expected.map.keyframes) {
     ASSERT_TRUE(found.map.keyframes.contains(keyframe.id));

@@ -62,6 +62,16 @@ TEST(SavedMapFile, OnlyTheCameraThatItWasMadeWithFits) {
   expectInputError([&] { loadMap(folder.path("hall.map"), other); }, folder.path("hall.map"), "calibration");
 }
 
+TEST(SavedMapFile, AnotherReadoutIsTold) {
+  const TemporaryFolder folder;
+  SavedMap saved = test::madeMap(64, 48);
+  saved.camera.readout_s = 0;
+  const std::string path = folder.write("hall.map", encodeMap(saved));
+  Camera other = saved.camera;
+  other.readout_s = 0.02;
+  expectInputError([&] { loadMap(path, other); }, path, "another calibration", "its readout is 0 s, theirs is 0.02 s");
+}
+
 TEST(SavedMapFile, WithoutAKeyframeThereIsNothingToGoOnFrom) {
   const TemporaryFolder folder;
   const SavedMap made = test::madeMap(64, 48);

@@ -34,7 +34,7 @@ TEST(InitialMap, HasTheStructuresFramesAndItsKnownPoints) {
                                     [&](const PointObservation& o) { return o.point == unseen; });
     frame.observations.erase(end, frame.observations.end());
   }
-  const Map map = initialMap(frames, structure, 0.15);
+  const Map map = initialMap({}, frames, structure, 0.15);
   ASSERT_EQ(map.keyframes.size(), 3U);
   EXPECT_EQ(map.keyframes[0].reason, "first");
   EXPECT_EQ(map.keyframes[2].reason, "initialisation");

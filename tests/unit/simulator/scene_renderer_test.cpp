@@ -141,6 +141,32 @@ TEST(SceneRenderer, BlurIsCentredOnTheMiddlePose) {
   EXPECT_GT(cv::norm(blurred, sharp, cv::NORM_INF), 0.1);
 }
 
+TEST(SceneRenderer, RowsOfOnePoseAreOneImage) {
+  const LitScene lit = slantedRectangle();
+  const RayTable rays = makeRayTable(smallCamera(false));
+  const std::vector<Pose> poses(5);
+  const cv::Mat whole = renderRadiance(lit, rays, poses);
+  const cv::Mat rows = renderRowByRow(lit, rays, [&](int) { return poses; });
+  EXPECT_LT(cv::norm(whole, rows, cv::NORM_INF), 1e-5);
+}
+
+TEST(SceneRenderer, EveryRowIsSeenFromItsOwnPoses) {
+  const Camera camera = smallCamera(true);
+  const LitScene lit = slantedRectangle();
+  const RayTable rays = makeRayTable(camera);
+  const auto poses = [&](int row) {
+    Pose pose;
+    pose.translation = row / 120.0 * Vector3d(0.08, 0.05, 0.06);
+    pose.rotation = rotationExp(row / 120.0 * Vector3d(0.03, -0.04, 0.05));
+    return std::vector<Pose>(5, pose);
+  };
+  const cv::Mat rows = renderRowByRow(lit, rays, poses);
+  for (const int row : {0, 1, 59, 118, 119}) {
+    const cv::Mat whole = renderRadiance(lit, rays, poses(row));
+    EXPECT_LT(cv::norm(whole.row(row), rows.row(row), cv::NORM_INF), 1e-5) << row;
+  }
+}
+
 TEST(SceneRenderer, TheNearerSurfaceIsSeen) {
   LitScene lit;
   add(lit, rectangle({-20, 20, 3}, {40, 0, 0}, {0, -40, 0}, 0.2));

@@ -31,13 +31,14 @@ class SimulatorFolder : public testing::Test {
   SimulatorFolder(const SimulatorFolder&) = delete;
   SimulatorFolder& operator=(const SimulatorFolder&) = delete;
 
-  static SimulatedSequence shortSequence(bool fisheye = false) {
+  static SimulatedSequence shortSequence(bool fisheye = false, double readout_ms = 0) {
     SimulationOptions options;
     options.scene = SceneKind::panels;
     options.frames = 3;
     options.width = 96;
     options.height = 72;
     options.fisheye = fisheye;
+    options.readout_ms = readout_ms;
     return makeSequence(options);
   }
   bool baseIsEmpty() const { return fs::is_empty(base_); }
@@ -76,6 +77,18 @@ TEST_F(SimulatorFolder, IsReadBackAsItWasMade) {
       EXPECT_LT(rotationAngle(pose.world_T_camera.rotation, expected.world_T_camera.rotation), 1e-7);
     }
     EXPECT_FALSE(source->next().has_value());
+  }
+}
+
+TEST_F(SimulatorFolder, TheCalibrationHasTheReadoutOfARollingShutter) {
+  for (const double readout_ms : {0.0, 24.0, -7.5}) {
+    const SimulatedSequence sequence = shortSequence(false, readout_ms);
+    const std::string text = formatCalibration(sequence.camera, sequence.options);
+    EXPECT_EQ(text.find("readout: 0.024\n") != std::string::npos, readout_ms == 24) << text;
+    EXPECT_EQ(text.find("readout: -0.0075\n") != std::string::npos, readout_ms == -7.5) << text;
+    EXPECT_EQ(text.find("readout") == std::string::npos, readout_ms == 0) << text;
+    writeSequence(sequence, (base_ / "out").string(), true, {});
+    EXPECT_NEAR(openFrames((base_ / "out").string())->camera()->readout_s, 1e-3 * readout_ms, 1e-12);
   }
 }
 

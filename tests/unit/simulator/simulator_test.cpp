@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "edgeslam/input_error.h"
+#include "geometry/rolling_shutter.h"
 #include "unit/simulator/image_edge.h"
 
 namespace edgeslam {
@@ -31,6 +32,10 @@ std::vector<double> panelEdgeOffsets(const SimulatedSequence& sequence, int inde
   cv::Mat grey;
   frame.grey.convertTo(grey, CV_32F);
   const Pose camera_T_world = frame.world_T_camera.inverse();
+  constexpr double step_s = 0.02;
+  const double time_s = index / sequence.options.fps;
+  const Twist twist =
+      twistBetween(poseAt(sequence.motion, time_s - step_s / 2), poseAt(sequence.motion, time_s + step_s / 2), step_s);
   std::vector<double> offsets;
   for (const SceneRectangle& r : sequence.scene.scene.rectangles) {
     // Front faces: as high as a panel and turned to the camera.
@@ -39,7 +44,7 @@ std::vector<double> panelEdgeOffsets(const SimulatedSequence& sequence, int inde
       const bool upright = std::abs(up.z() - 1.95) < 1e-6 && along.norm() > 0.5;
       if (!upright || r.side_s.cross(r.side_t).y() > 0) continue;
       const auto at = [&, b = base, a = along, u = up](double share) {
-        return project(sequence.camera, camera_T_world * (b + u + share * a));
+        return projectToRow(sequence.camera, twist, camera_T_world * (b + u + share * a));
       };
       for (double share = 0.2; share < 0.81; share += 0.05) {
         const Vector2d pixel = at(share), direction = (at(share + 0.01) - at(share - 0.01)).normalized();
@@ -55,8 +60,9 @@ std::vector<double> panelEdgeOffsets(const SimulatedSequence& sequence, int inde
 TEST(Simulator, ImagesAgreeWithTheGroundTruth) {
   SimulationOptions options = smallOptions(SceneKind::panels);
   options.noise = 0;
-  for (const double exposure_ms : {0.0, 30.0}) {
+  for (const auto& [exposure_ms, readout_ms] : {std::pair(0.0, 0.0), std::pair(30.0, 0.0), std::pair(0.0, 30.0)}) {
     options.exposure_ms = exposure_ms;
+    options.readout_ms = readout_ms;
     SimulatedSequence sequence = makeSequence(options);
     // Plain surfaces, so that nothing but the edge shows in a profile.
     for (cv::Mat& light : sequence.scene.light) light.setTo(cv::mean(light));
@@ -109,6 +115,116 @@ TEST(Simulator, BlurGrowsWithTheSpeed) {
     cv::meanStdDev(edges, mean, deviation);
     EXPECT_LT(deviation[0], 0.9 * sharper) << speed;
     sharper = deviation[0];
+  }
+}
+
+// A bright plane to the right of a vertical edge straight ahead, 1 m away, before a dark one, as an ideal lens sees it.
+// An odd number of rows: one is the middle row.
+SimulatedSequence sequenceOfAnEdge(double readout_ms) {
+  SimulationOptions options = smallOptions(SceneKind::panels);
+  options.height = 241;
+  options.frames = 1;
+  options.noise = 0;
+  options.exposure_ms = 0;
+  options.speed = 0.05;
+  options.readout_ms = readout_ms;
+  SimulatedSequence sequence = makeSequence(options);
+  sequence.camera.distortion.fill(0);
+  sequence.rays = makeRayTable(sequence.camera);
+  sequence.motion = CameraMotion();
+  sequence.motion.speed = 0;
+  const Pose start = poseAt(sequence.motion, 0);
+  sequence.scene = LitScene();
+  const auto add = [&](const Vector3d& corner, double albedo) {
+    SceneRectangle plane;
+    plane.corner = start * corner;
+    plane.side_s = start.rotation * Vector3d(40, 0, 0);
+    plane.side_t = start.rotation * Vector3d(0, -40, 0);
+    plane.albedo = albedo;
+    sequence.scene.scene.rectangles.push_back(plane);
+    sequence.scene.light.emplace_back(2, 2, CV_32F, cv::Scalar(1));
+  };
+  add({-20, 20, 1.5}, 0.2);
+  add({0, 20, 1}, 0.7);
+  sequence.gains = {1};
+  return sequence;
+}
+
+// The same, seen by a camera that moves steadily along or about an axis of its own [m/s or rad/s].
+SimulatedSequence sequenceOfAPassingEdge(double readout_ms, std::size_t axis, double speed) {
+  SimulatedSequence sequence = sequenceOfAnEdge(readout_ms);
+  constexpr double amplitude = 20;  // so slow a sway is steady about its middle
+  sequence.motion.tremor[axis] = {{amplitude, speed / (2 * M_PI * amplitude), 0}};
+  return sequence;
+}
+
+// Column of the edge in a row [px].
+double edgeColumn(const cv::Mat& grey, const SimulatedSequence& sequence, int row) {
+  cv::Mat image;
+  grey.convertTo(image, CV_32F);
+  const Vector2d middle(sequence.camera.cx, row);
+  return middle.x() + edgeOffset(image, middle, Vector2d(1, 0), 8);
+}
+
+constexpr std::size_t sideways = 0, about_the_upright = 4;  // axes of a pose's update
+
+TEST(Simulator, AReadoutShearsAsFarAsTheCameraMoves) {
+  constexpr double speed = 0.8;  // [m/s] at 1 m, and [rad/s]
+  constexpr int first = 20, last = 220;
+  for (const std::size_t axis : {sideways, about_the_upright}) {
+    for (const double readout_ms : {0.0, 24.0, -24.0}) {
+      const SimulatedSequence sequence = sequenceOfAPassingEdge(readout_ms, axis, speed);
+      const cv::Mat grey = sequence.frame(0).grey;
+      // To the right the camera moves, to the left the edge: in rows read later, it is farther left.
+      const double share = (last - first) / 240.0;
+      const double expected = -speed * 1e-3 * readout_ms * sequence.camera.fx * share;
+      EXPECT_NEAR(edgeColumn(grey, sequence, last) - edgeColumn(grey, sequence, first), expected, 0.05)
+          << axis << " " << readout_ms;
+      EXPECT_NEAR(std::abs(expected), readout_ms == 0 ? 0 : 4.258, 0.001);
+      // Straight: halfway in time is halfway in space.
+      EXPECT_NEAR(edgeColumn(grey, sequence, 170) - edgeColumn(grey, sequence, 120), expected / 4, 0.05);
+    }
+  }
+}
+
+TEST(Simulator, TheMiddleRowIsThatOfAGlobalShutter) {
+  for (const std::size_t axis : {sideways, about_the_upright}) {
+    const SimulatedSequence global = sequenceOfAPassingEdge(0, axis, 0.8);
+    const SimulatedFrame expected = global.frame(0);
+    for (const double readout_ms : {24.0, -24.0}) {
+      const SimulatedFrame frame = sequenceOfAPassingEdge(readout_ms, axis, 0.8).frame(0);
+      EXPECT_EQ(frame.time_ns, expected.time_ns);
+      EXPECT_EQ(frame.world_T_camera.translation, expected.world_T_camera.translation);
+      EXPECT_LE(cv::norm(frame.grey.row(120), expected.grey.row(120), cv::NORM_INF), 1);
+      for (const int row : {0, 240}) {
+        EXPECT_GT(cv::norm(frame.grey.row(row), expected.grey.row(row), cv::NORM_INF), 50) << row;
+      }
+    }
+  }
+}
+
+TEST(Simulator, AReadoutDoesNotShowWhereTheCameraStands) {
+  SimulationOptions options = smallOptions(SceneKind::panels);
+  options.still = {{5, 20}};
+  options.noise = 0;
+  const cv::Mat global = makeSequence(options).frame(15).grey;
+  options.readout_ms = 30;
+  EXPECT_LE(cv::norm(global, makeSequence(options).frame(15).grey, cv::NORM_INF), 1);
+}
+
+TEST(Simulator, WithoutAReadoutImagesAreThoseOfAGlobalShutter) {
+  SimulationOptions options = smallOptions(SceneKind::panels_textured);
+  const SimulatedSequence usual = makeSequence(options);
+  options.readout_ms = 0;
+  const SimulatedSequence none = makeSequence(options);
+  options.readout_ms = 24;
+  const SimulatedSequence rolling = makeSequence(options);
+  EXPECT_EQ(none.camera.readout_s, 0);
+  EXPECT_DOUBLE_EQ(rolling.camera.readout_s, 0.024);
+  for (const int index : {0, 20}) {
+    const cv::Mat grey = usual.frame(index).grey;
+    EXPECT_EQ(cv::norm(grey, none.frame(index).grey, cv::NORM_INF), 0) << index;
+    EXPECT_GT(cv::norm(grey, rolling.frame(index).grey, cv::NORM_INF), 20) << index;
   }
 }
 
@@ -207,6 +323,8 @@ TEST(Simulator, RefusesBadOptions) {
   refused([](SimulationOptions& o) { o.noise = -1; });
   refused([nan](SimulationOptions& o) { o.noise = nan; });
   refused([](SimulationOptions& o) { o.exposure_ms = 34; });
+  for (const double readout_ms : {34.0, -34.0, nan}) refused([=](SimulationOptions& o) { o.readout_ms = readout_ms; });
+  refused([](SimulationOptions& o) { o.fps = 2, o.readout_ms = 201; });
   refused([](SimulationOptions& o) { o.speed = 0; });
   refused([](SimulationOptions& o) { o.covered = {{30, 11}}; });
   refused([](SimulationOptions& o) { o.shaken = {{-1, 5}}; });
