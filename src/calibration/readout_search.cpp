@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "files/format_text.h"
@@ -11,7 +12,7 @@ namespace edgeslam {
 namespace {
 
 constexpr double coarse_step_s = 0.01, fine_step_s = 0.002, fine_reach_s = 0.006;
-constexpr std::size_t stretches = 10, fewest_stretches = 5;
+constexpr std::size_t stretches = 10, fewest_stretches = 5, most_contradicting = 2;
 constexpr std::size_t fewest_frames = 100;  // that say something
 // Errors with the worst readout tried over those with the best one. Motion so slow that it makes less of a difference
 // is known too badly from frame to frame: that alone speaks against long readouts.
@@ -70,6 +71,16 @@ std::optional<double> lowestOfParabola(const std::vector<ReadoutTrial>& trials, 
   return centre + std::clamp(-0.5 * parabola.y() / parabola.z(), -1.0, 1.0) * fine_reach_s;
 }
 
+// True where a trial farther away than what is tried around `centre` fits clearly better than all of those.
+bool contradicts(const std::vector<ReadoutTrial>& trials, const Errors& errors, double centre) {
+  double near = std::numeric_limits<double>::infinity(), far = near;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    double& least = std::abs(trials[k].readout_s - centre) < 1.01 * fine_reach_s ? near : far;
+    least = std::min(least, errors[k]);
+  }
+  return near - far > std::log(least_gain);
+}
+
 double scatterOf(const std::vector<double>& values) {
   double sum = 0, squares = 0;
   for (const double value : values) sum += value;
@@ -98,9 +109,15 @@ ReadoutEstimate estimateFrom(const std::vector<ReadoutTrial>& trials, double cen
     return estimate;
   }
   std::vector<double> of_stretches;
+  std::size_t contradicting = 0;
   for (std::size_t s = 0; s < stretches; ++s) {
     const Errors of_stretch = meansOf(errors, s * frames / stretches, (s + 1) * frames / stretches);
     if (const auto lowest = lowestOfParabola(trials, of_stretch, centre)) of_stretches.push_back(*lowest);
+    contradicting += contradicts(trials, of_stretch, centre) ? 1 : 0;
+  }
+  if (contradicting > most_contradicting) {
+    estimate.problem = "parts of the recording ask for very different readouts: is it of one camera in one mode?";
+    return estimate;
   }
   const std::optional<double> lowest = lowestOfParabola(trials, means, centre);
   if (!lowest || of_stretches.size() < fewest_stretches) {

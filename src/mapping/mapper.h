@@ -74,7 +74,7 @@ class Mapper {
   std::size_t startsGivenUp() const { return starts_given_up_; }
   // That tracking is in, or was in before the start that is under way; -1 before the first one stood.
   int world() const { return world_; }
-  // Of all worlds.
+  // All worlds that stand; empty before the first one does.
   const Map& map() const { return map_; }
   // How the first world came to be, in words, and the latest.
   const std::string& initialisationDescription() const { return first_description_; }

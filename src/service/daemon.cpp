@@ -11,9 +11,6 @@ namespace {
 
 constexpr auto longest_wait = std::chrono::milliseconds(100);  // for a frame, before signals and commands are seen to
 
-// Of a run that was stopped; empty where none came to stand.
-Map mapOf(const LiveRun& run) { return run.mapper().initialised() ? run.mapper().map() : Map(); }
-
 }  // namespace
 
 Daemon::Daemon(DaemonSetup setup, EventLog& log)
@@ -76,7 +73,7 @@ void Daemon::oneRun() {
   recorder.reset();
   if (end.command) return beginNext(*end.command, run);
   ended_ = true;
-  finish(mapOf(run));
+  finish(run.mapper().map());
 }
 
 // Priorities and memory were told at the start, with what to do.
@@ -113,7 +110,7 @@ void Daemon::beginNext(const Command& command, LiveRun& run) {
     log_.tell("the map is forgotten, begun anew");
     return link_.answer(command, true, "begun anew");
   }
-  const bool has_map = run.mapper().initialised() && !run.mapper().map().points.empty();
+  const bool has_map = !run.mapper().map().points.empty();
   start_ = has_map ? RunStart::same_map : RunStart::new_map;
   if (has_map) {
     map_ = run.mapper().map();

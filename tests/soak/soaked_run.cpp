@@ -65,7 +65,7 @@ Map SoakedRun::end() {
   if (received_ + counts.not_published != counts.processed) note("results were lost and not counted");
   if (unreadable_ != handed_unreadable_) note("unreadable frames: " + std::to_string(unreadable_));
   if (counts.messages_waiting != 0 || counts.results_waiting != 0) note("something still waits after the end");
-  const Map map = run_.mapper().initialised() ? run_.mapper().map() : Map();
+  const Map& map = run_.mapper().map();
   if (map.keyframes.size() != counts.keyframes || map.points.size() != counts.points) note("the map's counts differ");
   return map;
 }

@@ -80,7 +80,7 @@ TEST(RoughCamera, AReadoutLongerThanTheTimeBetweenFramesIsRefused) {
   const ReplayedRun result =
       replayed(place("parlour_rolling"), folder.path("result"), {"--config", folder.path("long.yaml")});
   EXPECT_EQ(result.outcome.exit_code, 2);
-  EXPECT_NE(result.outcome.messages.find("readout is 0.05 s, but a frame comes every 0.0333 s"), std::string::npos)
+  EXPECT_NE(result.outcome.messages.find("readout is 0.05 s, but a frame comes every 0.03333 s"), std::string::npos)
       << result.outcome.messages;
 }
 

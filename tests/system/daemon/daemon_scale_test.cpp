@@ -145,7 +145,8 @@ TEST_F(DaemonScale, ComesFromTheCamerasHeight) {
     if (states.back().scale_state != state_t::SCALE_UNKNOWN) break;
     // It may come to be known as the recording ends.
     const std::vector<status_t> statuses = robot_->heard().statuses;
-    ASSERT_TRUE(std::any_of(statuses.begin(), statuses.end(), [](const status_t& s) { return !s.scale_reason.empty(); }))
+    ASSERT_TRUE(
+        std::any_of(statuses.begin(), statuses.end(), [](const status_t& s) { return !s.scale_reason.empty(); }))
         << "why it is not known is told: " << said;
   }
   expectTrueScale(states, state_t::SCALE_FROM_CAMERA_HEIGHT, said);
