@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "geometry/median.h"
 
@@ -12,8 +13,7 @@ constexpr double quantile = 0.35;
 constexpr double quantile_of_normal = 0.4538;  // 35 % of normally distributed values are within so many deviations
 constexpr double far_sigmas = 12;
 constexpr int fewest_points = 20;
-constexpr double share_of_step = 0.1;  // that a frame moves the factor towards what it says, the first ones more ...
-constexpr double largest_ratio = 3;    // ... and the most that it is taken to say
+constexpr double largest_ratio = 3;  // that a frame is taken to say
 
 }  // namespace
 
@@ -39,9 +39,12 @@ bool saysSomething(const NoiseEvidence& evidence) {
 double MeasuredNoise::observe(const NoiseEvidence& evidence) {
   if (!saysSomething(evidence) || evidence.share_within_12_sigma < options_.least_share_within_12_sigma) return 1;
   const double before = factor_;
-  const double share = std::max(share_of_step, 1.0 / ++observed_);
-  const double step = 1 + share * (std::min(evidence.ratio, largest_ratio) - 1);
-  factor_ = std::clamp(factor_ * step, 1.0, std::max(1.0, options_.most));
+  levels_[observed_++ % levels_.size()] = factor_ * std::min(evidence.ratio, largest_ratio);
+  auto sorted = levels_;
+  const auto told = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(observed_, levels_.size()));
+  const auto median = sorted.begin() + (told - sorted.begin()) / 2;
+  std::nth_element(sorted.begin(), median, told);
+  factor_ = std::clamp(*median, 1.0, std::max(1.0, options_.most));
   return factor_ / before;
 }
 

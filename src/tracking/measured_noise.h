@@ -3,7 +3,8 @@
 // measured before a pose is judged, so that a camera that errs more is not taken for one that is lost.
 #pragma once
 
-#include <cstdint>
+#include <array>
+#include <cstddef>
 #include <memory_resource>
 #include <vector>
 
@@ -33,7 +34,7 @@ NoiseEvidence noiseEvidence(const std::pmr::vector<double>& errors_across, std::
 // False where there are too few points.
 bool saysSomething(const NoiseEvidence& evidence);
 
-// Followed slowly from frame to frame.
+// Followed over the latest frames: what only a few of them say, as blur in a shake does, is passed over.
 class MeasuredNoise {
  public:
   explicit MeasuredNoise(const MeasuredNoiseOptions& options) : options_(options) {}
@@ -47,7 +48,8 @@ class MeasuredNoise {
  private:
   MeasuredNoiseOptions options_;
   double factor_ = 1;
-  std::int64_t observed_ = 0;  // frames
+  std::array<double, 9> levels_{};  // that the latest frames told, times what is presumed
+  std::size_t observed_ = 0;        // frames
 };
 
 // The factor that the measurements of a keyframe were taken with; `presumed`: what is presumed of a good camera.

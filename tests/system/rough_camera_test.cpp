@@ -57,7 +57,7 @@ TEST(RoughCamera, RowsThatAreReadOneAfterAnother) {
   const TemporaryFolder folder;
   const std::string sequence = place("parlour_rolling");
   const ReplayedRun with = replayed(sequence, folder.path("with"));
-  expectPosesGoOn(with, sequence, 0.08);
+  expectPosesGoOn(with, sequence, 0.12);
   folder.write("global.yaml", "camera: {readout: 0}\n");
   const ReplayedRun without = replayed(sequence, folder.path("without"), {"--config", folder.path("global.yaml")});
   ASSERT_EQ(without.outcome.exit_code, 0) << without.outcome.messages;

@@ -43,6 +43,15 @@ TEST(MeasuredNoise, FollowsACameraThatErrsMoreUpToTheBound) {
   EXPECT_EQ(factorAfter(100, 6.0), MeasuredNoiseOptions().most);
 }
 
+// A shake that blurs a few frames does not open the gates for what comes after.
+TEST(MeasuredNoise, AFewFramesAreNoCamera) {
+  MeasuredNoise noise{MeasuredNoiseOptions()};
+  for (int frame = 0; frame < 100; ++frame) {
+    noise.observe(evidenceOf((frame % 20 < 16 ? 0.6 : 5) / noise.factor(), 400));
+    EXPECT_EQ(noise.factor(), 1) << frame;
+  }
+}
+
 TEST(MeasuredNoise, FallsAgain) {
   MeasuredNoise noise{MeasuredNoiseOptions()};
   for (int frame = 0; frame < 100; ++frame) noise.observe(evidenceOf(3 / noise.factor(), 400));
