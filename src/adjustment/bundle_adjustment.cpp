@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "adjustment/bundle_lines.h"
 #include "adjustment/bundle_minimization.h"
 
 namespace edgeslam {
@@ -20,12 +21,16 @@ bool finite(const Pose& pose) { return pose.rotation.coeffs().allFinite() && pos
 
 bool indicesInRange(const BundleProblem& problem) {
   const int cameras = static_cast<int>(problem.cameras.size()), points = static_cast<int>(problem.points.size());
+  const int lines = static_cast<int>(problem.lines.size());
   if (problem.scale_camera >= cameras) return false;
   for (const BundlePoint& p : problem.points) {
     if (p.host < 0 || p.host >= cameras) return false;
   }
   for (const BundleObservation& o : problem.observations) {
     if (o.camera < 0 || o.camera >= cameras || o.point < 0 || o.point >= points) return false;
+  }
+  for (const BundleLineObservation& o : problem.line_observations) {
+    if (o.camera < 0 || o.camera >= cameras || o.line < 0 || o.line >= lines) return false;
   }
   return true;
 }
@@ -72,10 +77,10 @@ double robustCost(const Camera& camera, const BundleProblem& problem, double hub
                   [&](std::size_t, const Eigen::Vector2d* residual, const Matrix23d&, const Eigen::Vector3d&) {
                     cost += 0.5 * huberLoss(residual ? residual->squaredNorm() : behind_norm * behind_norm, huber);
                   });
-  return cost + priorCost(problem);
+  return cost + priorCost(problem) + lineCost(camera, problem, huber);
 }
 
-// Errors, depth deviations and final cost of a problem as it stands.
+// Errors, uncertainties and final cost of a problem as it stands.
 void assess(const Camera& camera, const BundleProblem& problem, double huber, BundleResult& result) {
   result.errors.assign(problem.observations.size(), infinity);
   std::vector<double> information(problem.points.size(), 0.0);
@@ -90,17 +95,18 @@ void assess(const Camera& camera, const BundleProblem& problem, double huber, Bu
         information[at(problem.observations[k].point)] +=
             huberWeight(norm, huber) * (by_sight * baseline).squaredNorm();
       });
-  result.final_cost = cost + priorCost(problem);
+  result.final_cost = cost + priorCost(problem) + lineCost(camera, problem, huber);
   for (std::size_t i = 0; i < problem.points.size(); ++i) {
     const BundlePoint& p = problem.points[i];
     if (usable(p) && p.prior_sigma > 0) information[i] += 1 / (p.prior_sigma * p.prior_sigma);
     result.depth_sigmas.push_back(information[i] > 0 ? 1 / std::sqrt(information[i]) : 0);
   }
+  assessLines(camera, problem, huber, result);
 }
 
-// Brings the scale camera back to its distance from camera 0 by scaling centres about camera 0 and depths with them,
-// which changes no residual but the depth priors'. Where another camera or a point is fixed, that holds the scale
-// already. False where the distance has collapsed.
+// Brings the scale camera back to its distance from camera 0 by scaling centres and lines about camera 0 and depths
+// with them, which changes no residual but the depth priors'. Where another camera, a point or a line is fixed, that
+// holds the scale already. False where the distance has collapsed.
 bool keepScale(const std::vector<BundleCamera>& before, BundleProblem& problem) {
   const auto distance = [&](const std::vector<BundleCamera>& cameras) {
     return (cameras[at(problem.scale_camera)].world_T_camera.translation - cameras[0].world_T_camera.translation)
@@ -113,6 +119,7 @@ bool keepScale(const std::vector<BundleCamera>& before, BundleProblem& problem) 
     Eigen::Vector3d& centre = problem.cameras[i].world_T_camera.translation;
     centre = origin + scale * (centre - origin);
   }
+  for (BundleLine& l : problem.lines) l.line.point = origin + scale * (l.line.point - origin);
   for (BundleCamera& c : problem.cameras) c.twist.head<3>() *= scale;
   for (BundlePoint& p : problem.points) {
     p.inverse_depth /= scale;
@@ -125,8 +132,10 @@ bool scaleIsFree(const BundleProblem& problem) {
   if (problem.scale_camera < 1) return false;
   const auto fixed_camera = [](const BundleCamera& c) { return c.fixed; };
   const auto fixed_point = [](const BundlePoint& p) { return p.fixed; };
+  const auto fixed_line = [](const BundleLine& l) { return l.fixed; };
   return std::none_of(problem.cameras.begin() + 1, problem.cameras.end(), fixed_camera) &&
-         std::none_of(problem.points.begin(), problem.points.end(), fixed_point);
+         std::none_of(problem.points.begin(), problem.points.end(), fixed_point) &&
+         std::none_of(problem.lines.begin(), problem.lines.end(), fixed_line);
 }
 
 // Copies what was adjusted. False where it holds a value that is not finite.
@@ -142,6 +151,12 @@ bool readBack(const BundleStructure& structure, const BundleState& state, Bundle
     problem.points[at(structure.points[i].index)].inverse_depth =
         std::max(least_inverse_depth, state.inverse_depths[i]);
   }
+  for (std::size_t i = 0; i < structure.lines.size(); ++i) {
+    if (!structure.lines[i].free) continue;
+    const SpaceLine& line = state.lines[i];
+    if (!line.point.allFinite() || !line.direction.allFinite()) return false;
+    problem.lines[at(structure.lines[i].index)].line = line;
+  }
   return true;
 }
 
@@ -154,6 +169,8 @@ BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const Bu
   if (!indicesInRange(problem) || !std::all_of(problem.cameras.begin(), problem.cameras.end(), finite_camera)) {
     result.errors.assign(problem.observations.size(), infinity);
     result.depth_sigmas.assign(problem.points.size(), 0);
+    result.line_errors.assign(problem.line_observations.size(), infinity);
+    result.line_covariances.assign(problem.lines.size(), Eigen::Matrix4d::Zero());
     return result;
   }
   result.initial_cost = robustCost(camera, problem, options.huber);
@@ -163,6 +180,7 @@ BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const Bu
   if (iterations >= 0) {
     const std::vector<BundleCamera> cameras_before = problem.cameras;
     const std::vector<BundlePoint> points_before = problem.points;
+    const std::vector<BundleLine> lines_before = problem.lines;
     result.usable = readBack(workspace.structure, workspace.state, problem) &&
                     (!scaleIsFree(problem) || keepScale(cameras_before, problem));
     if (result.usable) {
@@ -170,6 +188,7 @@ BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const Bu
     } else {
       problem.cameras = cameras_before;
       problem.points = points_before;
+      problem.lines = lines_before;
     }
   }
   assess(camera, problem, options.huber, result);

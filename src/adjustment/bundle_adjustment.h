@@ -1,6 +1,7 @@
-// P19, eq. 1: bundle adjustment of keyframe poses and inverse depths. A point is one unknown: its inverse distance rho
-// along the fixed unit bearing in its host camera, X_host = bearing / rho. Residuals are whitened across and along the
-// edge; Levenberg-Marquardt's method minimises them with the depths eliminated first, each a division.
+// P19, eq. 1: bundle adjustment of keyframe poses, inverse depths and straight lines. A point is one unknown: its
+// inverse distance rho along the fixed unit bearing in its host camera, X_host = bearing / rho. Residuals are whitened
+// across and along the edge; a line is four unknowns, and what is seen of it has residuals across it.
+// Levenberg-Marquardt's method minimises them with the depths and lines eliminated first, a depth by a division.
 #pragma once
 
 #include <atomic>
@@ -10,6 +11,7 @@
 #include "geometry/measurement.h"
 #include "geometry/pose.h"
 #include "geometry/rolling_shutter.h"
+#include "geometry/space_line.h"
 
 namespace edgeslam {
 
@@ -36,19 +38,35 @@ struct BundleObservation {
   Measurement measurement;
 };
 
+struct BundleLine {
+  SpaceLine line;  // world frame
+  bool fixed = false;
+};
+
+// A ray on which a line is seen: two of them, to its ends, say all that a view of a straight edge does.
+struct BundleLineObservation {
+  int camera = 0;
+  int line = 0;
+  Eigen::Vector3d bearing;  // unit, camera frame of the row where it was measured
+  double row = 0;           // that row [px]; matters where the camera moves while it is read
+  double sigma = 0;         // standard deviation across the line [rad]
+};
+
 struct BundleProblem {
   std::vector<BundleCamera> cameras;
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;
+  std::vector<BundleLine> lines;
+  std::vector<BundleLineObservation> line_observations;
   // Where over 0: the distance of this camera's centre from camera 0's is kept (the gauge of scale when only camera 0
-  // is fixed), by scaling all centres about camera 0 and all depths. Ignored where another camera or a point is fixed,
-  // as that holds the scale.
+  // is fixed), by scaling all centres and lines about camera 0 and all depths. Ignored where another camera, a point or
+  // a line is fixed, as that holds the scale.
   int scale_camera = -1;
 };
 
 struct BundleOptions {
   int iterations = 8;
-  double huber = 2.0;  // whitened, of the norm of an observation's two residuals
+  double huber = 2.0;  // whitened, of the norm of an observation's two residuals, or of a line's one
 };
 
 struct BundleResult {
@@ -60,6 +78,12 @@ struct BundleResult {
   std::vector<double> errors;
   // Standard deviation of each point's inverse depth with the poses held, outliers down-weighed (0 where unobserved).
   std::vector<double> depth_sigmas;
+  // Absolute whitened residual of each line observation afterwards; infinity where the line is seen end-on, and for
+  // what takes no part: values that are not finite, directions and bearings that are not unit, sigmas not over 0.
+  std::vector<double> line_errors;
+  // Covariance of each line's change (4, as of movedLine()) from where it is afterwards, with the poses held, outliers
+  // down-weighed. Variances are at most 1e6, for what is not determined; 0 where the line is unobserved.
+  std::vector<Eigen::Matrix4d> line_covariances;
   double initial_cost = 0;
   double final_cost = 0;
   int iterations = 0;

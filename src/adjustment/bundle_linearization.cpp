@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adjustment/bundle_lines.h"
+
 namespace edgeslam {
 namespace {
 
@@ -224,7 +226,7 @@ double bundleCost(const Camera& camera, const BundleStructure& structure, const 
       cost += 0.5 * huberLoss(residual.squaredNorm(), huber);
     }
   }
-  return cost;
+  return cost + lineCost(structure, state, huber);
 }
 
 void linearizeBundle(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber,
@@ -232,6 +234,7 @@ void linearizeBundle(const Camera& camera, const BundleStructure& structure, con
   clear(structure, linearization);
   Linearizer linearizer(camera, structure, state, huber, damping, linearization);
   for (std::size_t i = 0; i < structure.points.size(); ++i) linearizer.addPoint(i);
+  linearizeLines(structure, state, huber, damping, linearization);
   joinBlocks(structure, linearization);
   linearization.gradient += linearization.camera_gradient;
 }

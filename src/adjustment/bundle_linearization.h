@@ -1,10 +1,12 @@
-// The normal equations of a bundle adjustment with the inverse depths eliminated, which leaves a system in the free
-// cameras' poses alone (Triggs et al., Bundle Adjustment - A Modern Synthesis, 2000, section 6.1). A depth is one
-// unknown, so its block is a number, and eliminating it a division.
+// The normal equations of a bundle adjustment with the inverse depths and the lines eliminated, which leaves a system
+// in the free cameras' poses alone (Triggs et al., Bundle Adjustment - A Modern Synthesis, 2000, section 6.1). A depth
+// is one unknown, so its block is a number, and eliminating it a division.
 //
 // Every camera's motion is described by a twist [v; w] about one common origin o, world axes: a point X goes to
 // X + v + w x (X - o). Then a residual depends on the difference of the host's and the target's twist only, and one
 // derivative serves both. With z = R_h f + rho (c_h - o), the sight changes by rho v + w x z.
+//
+// What is said of lines is in bundle_lines.h.
 #pragma once
 
 #include <vector>
@@ -18,11 +20,13 @@ struct BundleState {
   std::vector<Eigen::Quaterniond> rotations;  // world_R_camera of every camera
   std::vector<CameraFrame> frames;            // the same, with the centres
   std::vector<double> inverse_depths;         // of the structure's points
+  std::vector<SpaceLine> lines;               // the structure's, world frame
 };
 
 // The target as it reads the observation's row; `row` serves for it where the target moves meanwhile.
-inline const CameraFrame& targetFrame(const BundleStructure& structure, const BundleState& state,
-                                      const StructuredObservation& observation, CameraFrame& row) {
+template <typename Observation>
+const CameraFrame& targetFrame(const BundleStructure& structure, const BundleState& state,
+                               const Observation& observation, CameraFrame& row) {
   const CameraFrame& target = state.frames[static_cast<std::size_t>(observation.target)];
   if (observation.row < 0) return target;
   row = rowFrame(target, structure.rows[static_cast<std::size_t>(observation.row)]);
@@ -46,23 +50,35 @@ struct EliminatedPoint {
   double inverse_information = 0;  // 0: stays where it is
 };
 
+// What is needed of an eliminated line to find its change again, which is along its basis, as of movedLine().
+struct EliminatedLine {
+  LineBasis basis = LineBasis::Zero();
+  Eigen::Vector4d gradient = Eigen::Vector4d::Zero();             // of the cost, by the change
+  Eigen::Matrix4d inverse_information = Eigen::Matrix4d::Zero();  // 0: stays where it is
+};
+
+using Matrix64d = Eigen::Matrix<double, 6, 4>;
+
 struct BundleLinearization {
   double cost = 0;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::vector<Matrix6d> blocks;     // of the reduced system, twists; undamped but for the depths
+  std::vector<Matrix6d> blocks;     // of the reduced system, twists; undamped but for depths and lines
   std::vector<Matrix6d> pairs;      // of the squared difference of a host's and a target's twist, both free
-  std::vector<Matrix6d> diagonal;   // of each unknown: its block as it was before the depths were eliminated
+  std::vector<Matrix6d> diagonal;   // of each unknown: its block as it was before depths and lines were eliminated
   Eigen::VectorXd gradient;         // reduced, 6 an unknown
-  Eigen::VectorXd camera_gradient;  // before the depths were eliminated
+  Eigen::VectorXd camera_gradient;  // before depths and lines were eliminated
   std::vector<EliminatedPoint> points;
   // How depth and camera motion mix, for each observation: d^2 cost / (d sight d inverse depth).
   std::vector<Eigen::Vector3d> mixed;
+  std::vector<EliminatedLine> lines;
+  std::vector<Matrix64d> line_mixed;  // d^2 cost / (d twist d change), for each viewer of each line
 };
 
 // Robust cost (half the sum of Huber's losses, and priors) at a state.
 double bundleCost(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber);
 
-// Normal equations at a state, weights frozen there; depths are damped by `damping` times their own information.
+// Normal equations at a state, weights frozen there; depths and lines are damped by `damping` times their own
+// information.
 // `linearization.origin` is as the caller sets it.
 void linearizeBundle(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber,
                      double damping, BundleLinearization& linearization);

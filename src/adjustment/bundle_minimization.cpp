@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adjustment/bundle_lines.h"
+
 namespace edgeslam {
 namespace {
 
@@ -25,6 +27,8 @@ void readState(const BundleProblem& problem, const BundleStructure& structure, B
   state.inverse_depths.clear();
   for (const StructuredPoint& p : structure.points)
     state.inverse_depths.push_back(problem.points[at(p.index)].inverse_depth);
+  state.lines.clear();
+  for (const StructuredLine& line : structure.lines) state.lines.push_back(problem.lines[at(line.index)].line);
 }
 
 Eigen::Vector3d meanCentre(const BundleState& state) {
@@ -42,6 +46,8 @@ void moveState(const BundleWorkspace& workspace, BundleState& moved) {
     moved.frames[c] = {moved.rotations[c].toRotationMatrix(), moved.frames[c].centre + change.head<3>()};
   }
   for (std::size_t i = 0; i < moved.inverse_depths.size(); ++i) moved.inverse_depths[i] += workspace.depth_changes[i];
+  for (std::size_t i = 0; i < moved.lines.size(); ++i)
+    moved.lines[i] = movedLine(moved.lines[i], workspace.line_changes[i]);
 }
 
 // What the step takes off the cost if all is linear: half of it is undone by the curvature.
@@ -49,6 +55,8 @@ double expectedGain(const BundleWorkspace& workspace) {
   double descent = -workspace.linearization.camera_gradient.dot(workspace.step.twists);
   for (std::size_t i = 0; i < workspace.depth_changes.size(); ++i)
     descent -= workspace.linearization.points[i].gradient * workspace.depth_changes[i];
+  for (std::size_t i = 0; i < workspace.line_changes.size(); ++i)
+    descent -= workspace.linearization.lines[i].gradient.dot(workspace.line_changes[i]);
   return 0.5 * descent;
 }
 
@@ -56,6 +64,7 @@ bool computeStep(double damping, BundleWorkspace& workspace) {
   if (!workspace.solver.solve(workspace.structure, workspace.state, workspace.linearization, damping, workspace.step))
     return false;
   changeDepths(workspace.structure, workspace.linearization, workspace.step.twists, workspace.depth_changes);
+  changeLines(workspace.structure, workspace.linearization, workspace.step.twists, workspace.line_changes);
   return true;
 }
 
@@ -71,7 +80,7 @@ double dampingFactor(double gain, double expected) {
 int minimizeBundle(const Camera& camera, const BundleProblem& problem, const BundleOptions& options,
                    const std::atomic<bool>* interrupted, BundleWorkspace& workspace) {
   structureBundle(camera, problem, most_dense_cameras, workspace.structure);
-  if (workspace.structure.points.empty()) return -1;
+  if (workspace.structure.points.empty() && workspace.structure.lines.empty()) return -1;
   workspace.solver.prepare(workspace.structure);
   readState(problem, workspace.structure, workspace.state);
   workspace.linearization.origin = meanCentre(workspace.state);
@@ -108,7 +117,7 @@ int minimizeBundle(const Camera& camera, const BundleProblem& problem, const Bun
       const double factor = dampingFactor(gain, expected);
       damping = std::clamp(factor * damping, least_damping, most_damping);
       refusal_factor = 2;
-      if (factor > 1) linearizeAt(workspace.state, damping);  // else the depths' damping does not matter
+      if (factor > 1) linearizeAt(workspace.state, damping);  // else depths' and lines' damping does not matter
     } else {
       damping *= refusal_factor;
       refusal_factor *= 2;

@@ -17,9 +17,10 @@ struct BundleWorkspace {
   ReducedSolver solver;
   CameraStep step;
   std::vector<double> depth_changes;
+  std::vector<Eigen::Vector4d> line_changes;
 };
 
-// Minimises the problem's robust cost; the end is `workspace.state`, of the cameras and points of
+// Minimises the problem's robust cost; the end is `workspace.state`, of the cameras, points and lines of
 // `workspace.structure`. The number of iterations, or -1 where nothing is free or observed, no step could be computed,
 // or it was interrupted (`interrupted` may be null).
 int minimizeBundle(const Camera& camera, const BundleProblem& problem, const BundleOptions& options,

@@ -14,26 +14,36 @@ bool takesPart(const BundleProblem& problem, const BundleObservation& o) {
   return !p.fixed || !problem.cameras[at(p.host)].fixed || !problem.cameras[at(o.camera)].fixed;
 }
 
-// Indices of the observations that take part, by point and camera, equal ones in the order given.
-void orderObservations(const BundleProblem& problem, BundleStructure& structure) {
-  std::vector<int>& first = structure.first_of_point;
-  first.assign(problem.points.size() + 1, 0);
-  for (const BundleObservation& o : problem.observations) first[at(o.point) + 1] += takesPart(problem, o);
+bool takesPart(const BundleProblem& problem, const BundleLineObservation& o) {
+  const BundleLine& line = problem.lines[at(o.line)];
+  return usable(line) && usable(o) && !(line.fixed && problem.cameras[at(o.camera)].fixed);
+}
+
+int landmarkOf(const BundleObservation& o) { return o.point; }
+int landmarkOf(const BundleLineObservation& o) { return o.line; }
+
+// Of the observations that take part; `landmarks`: how many points or lines there are.
+template <typename Observation>
+void orderObservations(const BundleProblem& problem, const std::vector<Observation>& observations,
+                       std::size_t landmarks, ObservationOrder& ordered) {
+  std::vector<int>& first = ordered.first;
+  first.assign(landmarks + 1, 0);
+  for (const Observation& o : observations) first[at(landmarkOf(o)) + 1] += takesPart(problem, o);
   for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-  structure.order.resize(at(first.back()));
-  for (std::size_t k = 0; k < problem.observations.size(); ++k) {
-    const BundleObservation& o = problem.observations[k];
-    if (takesPart(problem, o)) structure.order[at(first[at(o.point)]++)] = static_cast<int>(k);
+  ordered.order.resize(at(first.back()));
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const Observation& o = observations[k];
+    if (takesPart(problem, o)) ordered.order[at(first[at(landmarkOf(o))]++)] = static_cast<int>(k);
   }
-  // Each now stands where the next point begins.
+  // Each now stands where the next point or line begins.
   for (std::size_t i = first.size() - 1; i > 0; --i) first[i] = first[i - 1];
   first[0] = 0;
   const auto earlier = [&](int a, int b) {
-    const int camera_a = problem.observations[at(a)].camera, camera_b = problem.observations[at(b)].camera;
+    const int camera_a = observations[at(a)].camera, camera_b = observations[at(b)].camera;
     return camera_a != camera_b ? camera_a < camera_b : a < b;
   };
   for (std::size_t i = 0; i + 1 < first.size(); ++i) {
-    const auto begin = structure.order.begin() + first[i], end = structure.order.begin() + first[i + 1];
+    const auto begin = ordered.order.begin() + first[i], end = ordered.order.begin() + first[i + 1];
     if (!std::is_sorted(begin, end, earlier)) std::sort(begin, end, earlier);
   }
 }
@@ -43,11 +53,12 @@ void nameUnknowns(const BundleProblem& problem, BundleStructure& structure) {
   const auto use = [&](int camera) {
     if (!problem.cameras[at(camera)].fixed) structure.unknown_of_camera[at(camera)] = 0;
   };
-  for (const int k : structure.order) {
+  for (const int k : structure.of_points.order) {
     const BundleObservation& o = problem.observations[at(k)];
     use(o.camera);
     use(problem.points[at(o.point)].host);
   }
+  for (const int k : structure.of_lines.order) use(problem.line_observations[at(k)].camera);
   structure.camera_of_unknown.clear();
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
     if (structure.unknown_of_camera[c] < 0) continue;
@@ -56,9 +67,23 @@ void nameUnknowns(const BundleProblem& problem, BundleStructure& structure) {
   }
 }
 
+// The structure's row in which a camera reads this one of its image; -1: it does not move meanwhile.
+int addRow(const Camera& camera, const BundleCamera& target, double row, BundleStructure& structure) {
+  if (camera.readout_s == 0 || target.twist.isZero(0)) return -1;
+  structure.rows.push_back(cameraFrame(rowPose(camera, target.twist, row)));
+  return static_cast<int>(structure.rows.size()) - 1;
+}
+
+// Lists an unknown as a viewer of a point or line, unless it was the last; its number among the viewers from `first`
+// on.
+int listViewer(int unknown, int first, std::vector<int>& viewers) {
+  if (static_cast<int>(viewers.size()) == first || viewers.back() != unknown) viewers.push_back(unknown);
+  return static_cast<int>(viewers.size()) - 1 - first;
+}
+
 // Copies the point's observations and lists its viewers.
 void addPoint(const Camera& camera, const BundleProblem& problem, int index, BundleStructure& structure) {
-  const int first = structure.first_of_point[at(index)], end = structure.first_of_point[at(index) + 1];
+  const int first = structure.of_points.first[at(index)], end = structure.of_points.first[at(index) + 1];
   if (first == end) return;
   const BundlePoint& p = problem.points[at(index)];
   StructuredPoint point;
@@ -76,40 +101,55 @@ void addPoint(const Camera& camera, const BundleProblem& problem, int index, Bun
   point.first_viewer = static_cast<int>(structure.viewers.size());
   const int host_unknown = structure.unknown_of_camera[at(p.host)];
   bool host_listed = host_unknown < 0;
-  const auto list = [&](int unknown) {
-    if (static_cast<int>(structure.viewers.size()) == point.first_viewer || structure.viewers.back() != unknown)
-      structure.viewers.push_back(unknown);
-    return static_cast<int>(structure.viewers.size()) - 1 - point.first_viewer;
-  };
+  const auto list = [&](int unknown) { return listViewer(unknown, point.first_viewer, structure.viewers); };
   for (int k = first; k < end; ++k) {
-    const BundleObservation& o = problem.observations[at(structure.order[at(k)])];
+    const BundleObservation& o = problem.observations[at(structure.of_points.order[at(k)])];
     const int unknown = structure.unknown_of_camera[at(o.camera)];
     if (!host_listed && unknown > host_unknown) {
       point.host_viewer = list(host_unknown);
       host_listed = true;
     }
+    const int row = addRow(camera, problem.cameras[at(o.camera)], o.measurement.pixel.y(), structure);
     structure.observations.push_back(
-        {{o.measurement.pixel, whitening(o.measurement)}, o.camera, unknown < 0 ? -1 : list(unknown), -1});
-    const Twist& twist = problem.cameras[at(o.camera)].twist;
-    if (camera.readout_s == 0 || twist.isZero(0)) continue;
-    structure.observations.back().row = static_cast<int>(structure.rows.size());
-    structure.rows.push_back(cameraFrame(rowPose(camera, twist, o.measurement.pixel.y())));
+        {{o.measurement.pixel, whitening(o.measurement)}, o.camera, unknown < 0 ? -1 : list(unknown), row});
   }
   if (!host_listed) point.host_viewer = list(host_unknown);
   point.end_viewer = static_cast<int>(structure.viewers.size());
   structure.points.push_back(point);
 }
 
-template <typename Function>
-void forEachPair(const BundleStructure& structure, const StructuredPoint& point, const Function& function) {
-  for (int row = point.first_viewer; row < point.end_viewer; ++row) {
-    for (int column = point.first_viewer; column <= row; ++column) {
-      function(structure.viewers[at(row)], structure.viewers[at(column)]);
+// Likewise the line's.
+void addLine(const Camera& camera, const BundleProblem& problem, int index, BundleStructure& structure) {
+  const int first = structure.of_lines.first[at(index)], end = structure.of_lines.first[at(index) + 1];
+  if (first == end) return;
+  StructuredLine line;
+  line.index = index;
+  line.free = !problem.lines[at(index)].fixed;
+  line.first_observation = first;
+  line.end_observation = end;
+  line.first_viewer = static_cast<int>(structure.line_viewers.size());
+  for (int k = first; k < end; ++k) {
+    const BundleLineObservation& o = problem.line_observations[at(structure.of_lines.order[at(k)])];
+    const int unknown = structure.unknown_of_camera[at(o.camera)];
+    const int viewer = unknown < 0 ? -1 : listViewer(unknown, line.first_viewer, structure.line_viewers);
+    const int row = addRow(camera, problem.cameras[at(o.camera)], o.row, structure);
+    structure.line_observations.push_back({o.bearing, o.sigma, o.camera, viewer, row});
+  }
+  line.end_viewer = static_cast<int>(structure.line_viewers.size());
+  structure.lines.push_back(line);
+}
+
+// Of a point or line, with the viewers of its kind.
+template <typename Landmark, typename Function>
+void forEachPair(const Landmark& landmark, const std::vector<int>& viewers, const Function& function) {
+  for (int row = landmark.first_viewer; row < landmark.end_viewer; ++row) {
+    for (int column = landmark.first_viewer; column <= row; ++column) {
+      function(viewers[at(row)], viewers[at(column)]);
     }
   }
 }
 
-// All blocks of the lower triangle, or those that some point asks for.
+// All blocks of the lower triangle, or those that some point or line asks for.
 void placeBlocks(int most_dense, BundleStructure& structure) {
   const auto unknowns = static_cast<std::int64_t>(structure.camera_of_unknown.size());
   structure.dense = unknowns <= most_dense;
@@ -121,9 +161,9 @@ void placeBlocks(int most_dense, BundleStructure& structure) {
       for (int row = column; row < unknowns; ++row) pairs.push_back(key(row, column));
     }
   } else {
-    for (const StructuredPoint& point : structure.points) {
-      forEachPair(structure, point, [&](int row, int column) { pairs.push_back(key(row, column)); });
-    }
+    const auto ask = [&](int row, int column) { pairs.push_back(key(row, column)); };
+    for (const StructuredPoint& point : structure.points) forEachPair(point, structure.viewers, ask);
+    for (const StructuredLine& line : structure.lines) forEachPair(line, structure.line_viewers, ask);
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   }
@@ -131,17 +171,28 @@ void placeBlocks(int most_dense, BundleStructure& structure) {
   for (const std::int64_t pair : pairs) {
     structure.places.push_back({static_cast<int>(pair % unknowns), static_cast<int>(pair / unknowns)});
   }
-  structure.blocks.clear();
-  for (StructuredPoint& point : structure.points) {
-    point.first_block = static_cast<int>(structure.blocks.size());
-    forEachPair(structure, point, [&](int row, int column) {
-      const std::int64_t before = column * unknowns - std::int64_t{column} * (column - 1) / 2;
-      const std::int64_t block = structure.dense
-                                     ? before + row - column
-                                     : std::lower_bound(pairs.begin(), pairs.end(), key(row, column)) - pairs.begin();
-      structure.blocks.push_back(static_cast<int>(block));
-    });
-  }
+  const auto blockAt = [&](int row, int column) {
+    const std::int64_t before = column * unknowns - std::int64_t{column} * (column - 1) / 2;
+    const std::int64_t block = structure.dense
+                                   ? before + row - column
+                                   : std::lower_bound(pairs.begin(), pairs.end(), key(row, column)) - pairs.begin();
+    return static_cast<int>(block);
+  };
+  const auto place = [&](auto& landmarks, const std::vector<int>& viewers, std::vector<int>& blocks) {
+    blocks.clear();
+    for (auto& landmark : landmarks) {
+      landmark.first_block = static_cast<int>(blocks.size());
+      forEachPair(landmark, viewers, [&](int row, int column) { blocks.push_back(blockAt(row, column)); });
+    }
+  };
+  place(structure.points, structure.viewers, structure.blocks);
+  place(structure.lines, structure.line_viewers, structure.line_blocks);
+}
+
+// False also for what is no number.
+bool isUnit(const Eigen::Vector3d& v) {
+  constexpr double tolerance = 1e-3;
+  return std::abs(v.squaredNorm() - 1) < tolerance;
 }
 
 }  // namespace
@@ -157,14 +208,26 @@ bool usable(const Measurement& measurement) {
          measurement.sigma_tangent > 0;
 }
 
+bool usable(const BundleLine& line) { return line.line.point.allFinite() && isUnit(line.line.direction); }
+
+bool usable(const BundleLineObservation& observation) {
+  return isUnit(observation.bearing) && std::isfinite(observation.row) && std::isfinite(observation.sigma) &&
+         observation.sigma > 0;
+}
+
 void structureBundle(const Camera& camera, const BundleProblem& problem, int most_dense, BundleStructure& structure) {
-  orderObservations(problem, structure);
+  orderObservations(problem, problem.observations, problem.points.size(), structure.of_points);
+  orderObservations(problem, problem.line_observations, problem.lines.size(), structure.of_lines);
   nameUnknowns(problem, structure);
   structure.points.clear();
   structure.observations.clear();
   structure.rows.clear();
   structure.viewers.clear();
+  structure.lines.clear();
+  structure.line_observations.clear();
+  structure.line_viewers.clear();
   for (std::size_t i = 0; i < problem.points.size(); ++i) addPoint(camera, problem, static_cast<int>(i), structure);
+  for (std::size_t i = 0; i < problem.lines.size(); ++i) addLine(camera, problem, static_cast<int>(i), structure);
   placeBlocks(most_dense, structure);
 }
 

@@ -1,5 +1,5 @@
-// A bundle problem laid out for solving: only what takes part, a point's observations side by side, and for every pair
-// of free cameras that see a point together the place of their block in the reduced system.
+// A bundle problem laid out for solving: only what takes part, the observations of a point or line side by side, and
+// for every pair of free cameras that see one together the place of their block in the reduced system.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,6 +32,29 @@ struct StructuredPoint {
   double prior_inverse_depth = 0;
 };
 
+struct StructuredLineObservation {
+  Eigen::Vector3d bearing;  // unit, camera frame of its row
+  double sigma = 0;         // [rad]
+  int target = 0;           // camera
+  int viewer = -1;          // which of the line's viewers the target is; -1: fixed
+  int row = -1;             // of the structure's rows; -1: the target does not move while it is read
+};
+
+// Cameras that are free and see a line are its viewers. It has no host.
+struct StructuredLine {
+  int index = 0;  // in the problem
+  bool free = false;
+  int first_observation = 0, end_observation = 0;  // of the lines'
+  int first_viewer = 0, end_viewer = 0;            // of the lines'
+  int first_block = 0;                             // of the lines', see blockOfPair()
+};
+
+// The order of some observations: their indices by what they are of and by camera, equal ones in the order given.
+struct ObservationOrder {
+  std::vector<int> first;  // of each point or line in `order`; and one past the last
+  std::vector<int> order;
+};
+
 // A 6x6 block of the reduced system, row >= column: indices of unknowns.
 struct BlockPlace {
   int row = 0, column = 0;
@@ -40,28 +63,36 @@ struct BlockPlace {
 struct BundleStructure {
   std::vector<StructuredPoint> points;
   std::vector<StructuredObservation> observations;
-  std::vector<CameraFrame> rows;       // camera_T_row of those read while their camera moves
-  std::vector<int> viewers;            // unknown of each viewer of each point, ascending within a point
-  std::vector<int> blocks;             // block of each pair of viewers of each point
+  std::vector<CameraFrame> rows;  // camera_T_row of those read while their camera moves
+  std::vector<int> viewers;       // unknown of each viewer of each point, ascending within a point
+  std::vector<int> blocks;        // block of each pair of viewers of each point
+  std::vector<StructuredLine> lines;
+  std::vector<StructuredLineObservation> line_observations;
+  std::vector<int> line_viewers;       // as `viewers`, of each line
+  std::vector<int> line_blocks;        // as `blocks`, of each line
   std::vector<int> camera_of_unknown;  // cameras that are free and observed, ascending
   std::vector<BlockPlace> places;      // of each block, by column, then row; all diagonal blocks are there
   bool dense = false;                  // all blocks of the lower triangle are there
 
   // Kept between calls for their memory.
-  std::vector<int> first_of_point, order, unknown_of_camera;
+  ObservationOrder of_points, of_lines;
+  std::vector<int> unknown_of_camera;
   std::vector<std::int64_t> pairs;
 };
 
-// Where in `blocks` a point's pair of viewers stands, counted from its first; `row` >= `column`.
+// Where in `blocks` a point's, or a line's, pair of viewers stands, counted from its first; `row` >= `column`.
 inline int blockOfPair(int row, int column) { return row * (row + 1) / 2 + column; }
 
-// True where nothing of it keeps an adjustment from using it: all numbers, sigmas and depths over 0.
+// True where nothing of it keeps an adjustment from using it: all numbers, sigmas and depths over 0, directions and
+// bearings of lines unit.
 bool usable(const BundlePoint& point);
 bool usable(const Measurement& measurement);
+bool usable(const BundleLine& line);
+bool usable(const BundleLineObservation& observation);
 
 // Indices must be in range. Takes out observations without effect (by the point's own host, of or by what is not
-// usable, or where nothing is free), and points that have none left. Up to `most_dense` free cameras the reduced system
-// has all its blocks.
+// usable, or where nothing is free), and points and lines that have none left. Up to `most_dense` free cameras the
+// reduced system has all its blocks.
 void structureBundle(const Camera& camera, const BundleProblem& problem, int most_dense, BundleStructure& structure);
 
 }  // namespace edgeslam

@@ -1,4 +1,5 @@
-// Solves the damped system in the cameras' poses that is left when a bundle adjustment's depths are eliminated.
+// Solves the damped system in the cameras' poses that is left when a bundle adjustment's depths and lines are
+// eliminated.
 #pragma once
 
 #include <Eigen/SparseCholesky>
