@@ -174,6 +174,7 @@ Keys methodKeys(Settings& settings) {
   RefinementOptions& refinement = tracking.location.refinement;
   EdgeLockOptions& edge_lock = tracking.location.edge_lock;
   MapReuseOptions& reuse = tracking.map_reuse;
+  StraightEdgeOptions& straight_edges = tracking.straight_edges;
   KeyframeOptions& keyframes = tracking.keyframes;
   ViewOptions& view = settings.mapping.view;
   InitialisationOptions& initialisation = settings.mapping.initialisation;
@@ -271,6 +272,13 @@ Keys methodKeys(Settings& settings) {
       {"edge_lock.straightness", &edge_lock.straightness, "", 0, 1,
        "held where the standard deviation across is below this share of that along"},
       {"edge_lock.longest_move", &edge_lock.longest_move, "px", 0, 100, "a longer way is not taken"},
+
+      heading("lines", "Straight edges become lines of the map"),
+      {"lines.enabled", &straight_edges.enabled, "", 0, 0,
+       "on for trials: bare corridors drift less, but one run in eight lost its scale"},
+      {"lines.least_length", &straight_edges.least_length, "px", 10, 10000, "shorter edges are points only"},
+      {"lines.least_parallax_deg", &adjustment.lines.least_parallax_deg, "deg", 0.1, 90,
+       "largest angle between the planes through a line and two keyframes"},
 
       heading("map_reuse", "Map points that come into view again are found and followed on"),
       {"map_reuse.enabled", &reuse.enabled, "", 0, 0, "off only to measure what it gains"},

@@ -10,6 +10,7 @@
 #include "geometry/rolling_shutter.h"
 #include "geometry/uncertainty.h"
 #include "image/pyramid.h"
+#include "map/map_line.h"
 
 namespace edgeslam {
 
@@ -29,8 +30,9 @@ struct PointObservation {
   Measurement measurement;
   Eigen::Vector3d bearing = Eigen::Vector3d::UnitZ();  // unit, of the measurement's pixel, middle row's camera frame
   bool corner = false;
-  int chain = -1;  // of the edge on which it was chosen, in the frame where it was chosen
-  int order = 0;   // place along that chain
+  int chain = -1;          // of the edge on which it was chosen, in the frame where it was chosen
+  int order = 0;           // place along that chain
+  int straight_edge = -1;  // index of the straight edge of this frame that it lies on; -1: on none, or near its end
 };
 
 // What a frame on its way to mapping is there for.
@@ -49,6 +51,7 @@ struct TrackedFrame {
   Pose world_T_camera;          // as tracking estimated it; of a lost frame without meaning
   Twist twist = Twist::Zero();  // of the camera as its rows were read
   std::vector<PointObservation> observations;
+  std::vector<SeenEdge> straight_edges;       // that at least three of them lie on
   std::shared_ptr<const FrameImages> images;  // null for FrameKind::start
   KeyframeId keyframe =
       -1;  // its number, of a lost frame the one that it gets if it is recovered; -1 for FrameKind::start
@@ -65,6 +68,7 @@ struct Keyframe {
   Pose world_T_camera;
   Twist twist = Twist::Zero();                 // of the camera as its rows were read
   std::vector<PointObservation> observations;  // sorted by point
+  std::vector<SeenEdge> straight_edges;        // that at least three of them lie on
   std::shared_ptr<const FrameImages> images;   // null for a keyframe that no point is hosted in
   std::string reason;
   Matrix7d uncertainty = Matrix7d::Zero();  // against the world's first keyframe (mapping/map_uncertainty.h)

@@ -4,6 +4,25 @@
 
 namespace edgeslam {
 
+SpaceLine inWorld(const Map& map, const MapLine& line) {
+  const Pose& world_T_host = map.keyframes[line.host].world_T_camera;
+  return {world_T_host * line.in_host.point, world_T_host.rotation * line.in_host.direction};
+}
+
+void setInWorld(const SpaceLine& in_world, const Map& map, MapLine& line) {
+  const Pose host_T_world = map.keyframes[line.host].world_T_camera.inverse();
+  line.in_host = {host_T_world * in_world.point, host_T_world.rotation * in_world.direction};
+}
+
+void dissolveLine(LineId id, Map& map) {
+  map.lines.erase(id);
+  for (Keyframe& keyframe : map.keyframes) {
+    for (SeenEdge& edge : keyframe.straight_edges) {
+      if (edge.line == id) edge.line = -1;
+    }
+  }
+}
+
 void setPlace(const Eigen::Vector3d& ray_origin, const Eigen::Vector3d& direction, double inverse_depth, double sigma,
               MapPoint& point) {
   point.host_bearing = direction;

@@ -25,12 +25,21 @@ struct MapPoint {
 struct Map {
   KeyframeTable<Keyframe> keyframes;
   std::map<PointId, MapPoint> points;  // ordered, so that every sum over them is the same in every run
+  std::map<LineId, MapLine> lines;     // likewise
+  LineId next_line = 0;                // no number is given twice
 };
 
 // Position in the world frame.
 inline Eigen::Vector3d worldPosition(const Map& map, const MapPoint& point) {
   return map.keyframes[point.host].world_T_camera * (point.host_bearing / point.inverse_depth);
 }
+
+// A line in the world frame, and set from there.
+SpaceLine inWorld(const Map& map, const MapLine& line);
+void setInWorld(const SpaceLine& in_world, const Map& map, MapLine& line);
+
+// Takes a line out of the map, and what keyframes know of it; its points stay.
+void dissolveLine(LineId line, Map& map);
 
 // Gives a point its place on a ray of its host's camera frame, from where the ray begins: the depth is kept from the
 // camera's centre.

@@ -47,6 +47,17 @@ void compareViews(const Map& after, PointId id, const MapPoint& old_point, const
   }
 }
 
+void compareLines(const Map& before, const Map& after, MapChange& change) {
+  for (const auto& [id, line] : before.lines) {
+    const auto found = after.lines.find(id);
+    if (found == after.lines.end()) {
+      change.dissolved_lines.push_back(id);
+    } else if (found->second.is_placed) {
+      change.lines[id] = {found->second.host, found->second.in_host};
+    }
+  }
+}
+
 void addView(const MapChange::View& view, Map& map) {
   Keyframe* keyframe = map.keyframes.find(view.keyframe);
   const auto point = map.points.find(view.observation.point);
@@ -81,6 +92,7 @@ MapChange changeOf(const Map& before, const Map& after, const std::optional<Worl
     change.depths[id] = {now.host, now.inverse_depth, now.inverse_depth_sigma, point.inverse_depth / now.inverse_depth};
     compareViews(after, id, point, now, change);
   }
+  compareLines(before, after, change);
   change.newer_world = before.keyframes.back().world;
   const bool is_joined = join && join->from == change.newer_world;
   change.newer_S_world = moveOfLatest(before, after, is_joined ? join->to_S_from.scale : 1);
@@ -102,6 +114,14 @@ void applyChange(const MapChange& change, Map& map) {
       point.inverse_depth_sigma /= scale;
     }
   }
+  for (auto& [id, line] : map.lines) {
+    const auto place = change.lines.find(id);
+    if (place != change.lines.end() && place->second.host == line.host) {
+      line.in_host = place->second.in_host;
+    } else if (map.keyframes[line.host].world == change.newer_world) {
+      line.in_host.point *= move.scale;
+    }
+  }
   for (Keyframe& keyframe : map.keyframes) {
     const auto corrected = change.world_T_camera.find(keyframe.id);
     if (corrected != change.world_T_camera.end()) {
@@ -114,6 +134,7 @@ void applyChange(const MapChange& change, Map& map) {
     if (change.join && keyframe.world == change.join->from) keyframe.world = change.join->to;
   }
   for (const PointId id : change.erased_points) map.points.erase(id);
+  for (const LineId id : change.dissolved_lines) dissolveLine(id, map);
   for (const auto& [id, keyframe] : change.erased_views) {
     const auto point = map.points.find(id);
     if (point == map.points.end()) continue;

@@ -19,6 +19,10 @@ struct MapChange {
     double inverse_depth = 0, inverse_depth_sigma = 0;
     double scale = 1;  // how much longer its distance became: for a point that has another host by now
   };
+  struct LinePlace {
+    KeyframeId host = -1;
+    SpaceLine in_host;
+  };
   struct View {
     KeyframeId keyframe = -1;
     PointObservation observation;
@@ -26,6 +30,8 @@ struct MapChange {
   std::map<KeyframeId, Pose> world_T_camera;  // of every keyframe of the copy
   std::map<KeyframeId, Twist> twists;         // likewise
   std::map<PointId, PointDepth> depths;       // of every point that is left
+  std::map<LineId, LinePlace> lines;          // of every placed line that is left
+  std::vector<LineId> dissolved_lines;
   std::vector<PointId> erased_points;
   std::vector<std::pair<PointId, KeyframeId>> erased_views;  // no longer in `seen_in`
   std::vector<View> added_views;                             // by point, then keyframe

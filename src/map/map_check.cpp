@@ -46,6 +46,15 @@ std::string observationProblem(const Camera& camera, const PointObservation& obs
   return "";
 }
 
+std::string straightEdgeProblem(const Camera& camera, const SeenEdge& edge) {
+  if (edge.line < -1 || edge.line > largest_count) return "there is no such line";
+  for (const EdgeEnd* end : {&edge.from, &edge.to}) {
+    if (!isReadable(camera, end->pixel)) return "its end is not in the image";
+    if (!isUnit(end->bearing)) return "its end's bearing is no unit vector";
+  }
+  return isPositive(edge.sigma) ? "" : "its standard deviation must be greater than 0";
+}
+
 std::string imagesProblem(const Camera& camera, const FrameImages& images) {
   if (!isCount(images.frame_index) || !isTime(images.time_ns)) return "its images' frame or time is out of range";
   if (images.pyramid.levels.empty()) return "its images are empty";
@@ -77,6 +86,16 @@ std::string keyframeProblem(const Camera& camera, const Keyframe& keyframe) {
     const std::string problem = observationProblem(camera, observation);
     if (!problem.empty()) return place + problem;
     before = observation.point;
+  }
+  for (const PointObservation& observation : keyframe.observations) {
+    if (observation.straight_edge < -1 ||
+        observation.straight_edge >= static_cast<std::int64_t>(keyframe.straight_edges.size())) {
+      return "observation of point " + std::to_string(observation.point) + ": its straight edge is not there";
+    }
+  }
+  for (const SeenEdge& edge : keyframe.straight_edges) {
+    const std::string problem = straightEdgeProblem(camera, edge);
+    if (!problem.empty()) return "a straight edge: " + problem;
   }
   return keyframe.images ? imagesProblem(camera, *keyframe.images) : "";
 }
@@ -113,6 +132,42 @@ std::string pointProblem(const Map& map, const MapPoint& point) {
   return "";
 }
 
+bool sees(const Keyframe& keyframe, LineId line) {
+  return std::any_of(keyframe.straight_edges.begin(), keyframe.straight_edges.end(),
+                     [=](const SeenEdge& edge) { return edge.line == line; });
+}
+
+std::string lineProblem(const Map& map, const MapLine& line) {
+  if (!isCount(line.id) || line.id >= map.next_line) return "there is no such number";
+  const Eigen::Vector3d& point = line.in_host.point;
+  if (!std::all_of(point.data(), point.data() + 3, isBounded)) return "its place is out of range";
+  if (!isUnit(line.in_host.direction)) return "its direction is no unit vector";
+  if (!isBounded(line.begin) || !isBounded(line.end) || line.begin > line.end) return "its extent is none";
+  if (!std::binary_search(line.seen_in.begin(), line.seen_in.end(), line.host)) {
+    return "keyframe " + std::to_string(line.host) + " is its host and does not see it";
+  }
+  KeyframeId before = -1;
+  for (const KeyframeId id : line.seen_in) {
+    const Keyframe* keyframe = map.keyframes.find(id);
+    const std::string place = "is seen in keyframe " + std::to_string(id);
+    if (!keyframe) return place + ", which is not in the map";
+    if (!sees(*keyframe, line.id)) return place + ", which has no view of it";
+    if (keyframe->world != map.keyframes[line.seen_in.front()].world) return place + ", which is of another world";
+    if (id <= before) return place + " twice or out of order";
+    before = id;
+  }
+  return "";
+}
+
+std::string unknownLineProblem(const Map& map, const Keyframe& keyframe) {
+  for (const SeenEdge& edge : keyframe.straight_edges) {
+    if (edge.line >= 0 && map.lines.count(edge.line) == 0) {
+      return "a straight edge: line " + std::to_string(edge.line) + " is not in the map";
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string cameraProblem(const Camera& camera) {
@@ -135,12 +190,18 @@ std::string cameraProblem(const Camera& camera) {
 
 std::string mapProblem(const Camera& camera, const Map& map) {
   for (const Keyframe& keyframe : map.keyframes) {
-    const std::string problem = keyframeProblem(camera, keyframe);
+    std::string problem = keyframeProblem(camera, keyframe);
+    if (problem.empty()) problem = unknownLineProblem(map, keyframe);
     if (!problem.empty()) return "keyframe " + std::to_string(keyframe.id) + ": " + problem;
   }
   for (const auto& [id, point] : map.points) {
     const std::string problem = point.id == id ? pointProblem(map, point) : "is kept under another number";
     if (!problem.empty()) return "point " + std::to_string(id) + ": " + problem;
+  }
+  if (!isCount(map.next_line)) return "the next line's number is none";
+  for (const auto& [id, line] : map.lines) {
+    const std::string problem = line.id == id ? lineProblem(map, line) : "is kept under another number";
+    if (!problem.empty()) return "line " + std::to_string(id) + ": " + problem;
   }
   return "";
 }

@@ -14,12 +14,15 @@ namespace edgeslam {
 namespace {
 
 constexpr std::string_view magic("EDGESLAM MAP\r\n\x1a\n", 16);
-constexpr std::uint32_t version_with_worlds = 2, version_with_readout = 3;
+constexpr std::uint32_t version_with_worlds = 2, version_with_readout = 3, version_with_lines = 3;
 constexpr std::size_t header_size = 28, checksum_size = 4;
-constexpr std::string_view camera_section = "CAMR", keyframe_section = "KEYF", point_section = "PNTS";
+constexpr std::string_view camera_section = "CAMR", keyframe_section = "KEYF", point_section = "PNTS",
+                           line_section = "LINE";
 
-// Bytes of a record that has nothing of variable length; of a keyframe in the first version, where it is shortest.
+// Bytes of a record that has nothing of variable length; of a keyframe and an observation in the first version, where
+// they are shortest.
 constexpr std::size_t observation_size = 89, least_keyframe_size = 93, least_point_size = 73, keyframe_id_size = 4;
+constexpr std::size_t straight_edge_size = 96, least_line_size = 85;
 
 // A few bytes of PNG can become a large image; all together may take so much memory [byte].
 constexpr std::uint64_t largest_images = std::uint64_t{1} << 32;
@@ -47,12 +50,22 @@ void keyframeFields(Stream& stream, KeyframeFields& keyframe, std::uint32_t vers
 }
 
 template <typename Stream, typename ObservationFields>
-void observationFields(Stream& stream, ObservationFields& observation) {
+void observationFields(Stream& stream, ObservationFields& observation, std::uint32_t version) {
   auto& measured = observation.measurement;
   stream(observation.point, measured.pixel[0], measured.pixel[1], measured.normal[0], measured.normal[1],
          measured.sigma_normal, measured.sigma_tangent);
   stream(observation.bearing[0], observation.bearing[1], observation.bearing[2]);
   stream(observation.corner, observation.chain, observation.order);
+  if (version >= version_with_lines) stream(observation.straight_edge);
+}
+
+template <typename Stream, typename EdgeFields>
+void straightEdgeFields(Stream& stream, EdgeFields& edge) {
+  stream(edge.line);
+  for (auto* end : {&edge.from, &edge.to}) {
+    stream(end->pixel[0], end->pixel[1], end->bearing[0], end->bearing[1], end->bearing[2]);
+  }
+  stream(edge.sigma);
 }
 
 template <typename Stream, typename PointFields>
@@ -60,6 +73,14 @@ void pointFields(Stream& stream, PointFields& point) {
   stream(point.id, point.host, point.host_bearing[0], point.host_bearing[1], point.host_bearing[2]);
   stream(point.inverse_depth, point.inverse_depth_sigma, point.corner);
   stream(point.chain_keyframe, point.chain, point.order);
+}
+
+template <typename Stream, typename LineFields>
+void lineFields(Stream& stream, LineFields& line) {
+  auto& place = line.in_host;
+  stream(line.id, line.host, place.point[0], place.point[1], place.point[2]);
+  stream(place.direction[0], place.direction[1], place.direction[2]);
+  stream(line.is_placed, line.begin, line.end);
 }
 
 std::uint32_t checksum(std::string_view bytes) {
@@ -87,7 +108,11 @@ void writeImages(ByteWriter& writer, const FrameImages& images) {
 void writeKeyframe(ByteWriter& writer, const Keyframe& keyframe) {
   keyframeFields(writer, keyframe, map_format_version);
   writer.u64(keyframe.observations.size());
-  for (const PointObservation& observation : keyframe.observations) observationFields(writer, observation);
+  for (const PointObservation& observation : keyframe.observations) {
+    observationFields(writer, observation, map_format_version);
+  }
+  writer.u64(keyframe.straight_edges.size());
+  for (const SeenEdge& edge : keyframe.straight_edges) straightEdgeFields(writer, edge);
   writer(keyframe.images != nullptr);
   if (keyframe.images) writeImages(writer, *keyframe.images);
 }
@@ -98,12 +123,27 @@ void writePoint(ByteWriter& writer, const MapPoint& point) {
   for (const KeyframeId id : point.seen_in) writer(id);
 }
 
+void writeLine(ByteWriter& writer, const MapLine& line) {
+  lineFields(writer, line);
+  writer.u64(line.seen_in.size());
+  for (const KeyframeId id : line.seen_in) writer(id);
+}
+
 template <typename Records, typename WriteRecord>
 void writeList(ByteWriter& writer, std::string_view section, const Records& records, const WriteRecord& write) {
   writer.raw(section);
   const std::size_t begin = writer.beginLength();
   writer.u64(records.size());
   for (const auto& record : records) write(record);
+  writer.endLength(begin);
+}
+
+void writeLines(ByteWriter& writer, const Map& map) {
+  writer.raw(line_section);
+  const std::size_t begin = writer.beginLength();
+  writer(map.next_line);
+  writer.u64(map.lines.size());
+  for (const auto& [id, line] : map.lines) writeLine(writer, line);
   writer.endLength(begin);
 }
 
@@ -157,7 +197,11 @@ Keyframe readKeyframe(ByteReader& reader, cv::Size size, std::uint32_t version) 
   Keyframe keyframe;
   keyframeFields(reader, keyframe, version);
   keyframe.observations.resize(reader.count(observation_size));
-  for (PointObservation& observation : keyframe.observations) observationFields(reader, observation);
+  for (PointObservation& observation : keyframe.observations) observationFields(reader, observation, version);
+  if (version >= version_with_lines) {
+    keyframe.straight_edges.resize(reader.count(straight_edge_size));
+    for (SeenEdge& edge : keyframe.straight_edges) straightEdgeFields(reader, edge);
+  }
   bool has_images = false;
   reader(has_images);
   if (has_images) keyframe.images = readImages(reader, size);
@@ -215,6 +259,21 @@ void readPoints(ByteReader reader, Map& map) {
   reader.expectEnd();
 }
 
+void readLines(ByteReader reader, Map& map) {
+  reader(map.next_line);
+  for (std::size_t left = reader.count(least_line_size); left > 0; --left) {
+    MapLine line;
+    lineFields(reader, line);
+    line.seen_in.resize(reader.count(keyframe_id_size));
+    for (KeyframeId& id : line.seen_in) reader(id);
+    if (!map.lines.empty() && line.id <= map.lines.rbegin()->first) {
+      reader.fail("line " + std::to_string(line.id) + " comes after " + std::to_string(map.lines.rbegin()->first));
+    }
+    map.lines.emplace_hint(map.lines.end(), line.id, std::move(line));
+  }
+  reader.expectEnd();
+}
+
 // The payload of a file that is whole and of a version that this program reads, which `version` gets.
 ByteReader openPayload(std::string_view bytes, const std::string& name, std::uint32_t& version) {
   if (bytes.substr(0, magic.size()) != magic.substr(0, bytes.size())) {
@@ -253,6 +312,7 @@ std::string encodeMap(const SavedMap& saved) {
   writeCamera(file, saved.camera);
   writeList(file, keyframe_section, saved.map.keyframes, [&](const Keyframe& k) { writeKeyframe(file, k); });
   writeList(file, point_section, saved.map.points, [&](const auto& entry) { writePoint(file, entry.second); });
+  writeLines(file, saved.map);
   file.endLength(payload);
   file.u32(checksum(file.bytes()));
   return file.take();
@@ -265,6 +325,7 @@ SavedMap decodeMap(std::string_view bytes, const std::string& name) {
   saved.camera = readCamera(openSection(payload, camera_section), version);
   readKeyframes(openSection(payload, keyframe_section), {saved.camera.width, saved.camera.height}, version, saved.map);
   readPoints(openSection(payload, point_section), saved.map);
+  if (version >= version_with_lines) readLines(openSection(payload, line_section), saved.map);
   payload.expectEnd();
   const std::string problem = mapProblem(saved.camera, saved.map);
   if (!problem.empty()) throw InputError(name + ": " + problem);

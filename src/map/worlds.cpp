@@ -6,9 +6,17 @@
 namespace edgeslam {
 namespace {
 
-void forgetPointsWithoutHost(Map& map) {
+// What only keyframes that are gone knew.
+void forgetWithoutKeyframes(Map& map) {
   for (auto point = map.points.begin(); point != map.points.end();) {
     point = map.keyframes.contains(point->second.host) ? std::next(point) : map.points.erase(point);
+  }
+  for (auto line = map.lines.begin(); line != map.lines.end();) {
+    std::vector<KeyframeId>& seen_in = line->second.seen_in;
+    seen_in.erase(
+        std::remove_if(seen_in.begin(), seen_in.end(), [&](KeyframeId id) { return !map.keyframes.contains(id); }),
+        seen_in.end());
+    line = map.keyframes.contains(line->second.host) ? std::next(line) : map.lines.erase(line);
   }
 }
 
@@ -56,13 +64,13 @@ KeyframeId keyframeBefore(const Map& map, KeyframeId id) {
 bool forgetFrom(Map& map, KeyframeId first) {
   if (map.keyframes.empty() || map.keyframes.back().id < first) return false;
   while (!map.keyframes.empty() && map.keyframes.back().id >= first) map.keyframes.erase(map.keyframes.back().id);
-  forgetPointsWithoutHost(map);
+  forgetWithoutKeyframes(map);
   return true;
 }
 
 void forgetWorld(Map& map, int world) {
   for (const KeyframeId id : keyframesOf(map, world)) map.keyframes.erase(id);
-  forgetPointsWithoutHost(map);
+  forgetWithoutKeyframes(map);
 }
 
 void joinWorlds(const WorldJoin& join, Map& map) {
@@ -70,6 +78,9 @@ void joinWorlds(const WorldJoin& join, Map& map) {
     if (map.keyframes[point.host].world != join.from) continue;
     point.inverse_depth /= join.to_S_from.scale;
     point.inverse_depth_sigma /= join.to_S_from.scale;
+  }
+  for (auto& [id, line] : map.lines) {
+    if (map.keyframes[line.host].world == join.from) line.in_host.point *= join.to_S_from.scale;
   }
   for (Keyframe& keyframe : map.keyframes) {
     if (keyframe.world != join.from) continue;

@@ -46,6 +46,24 @@ void hostElsewhere(const Map& map, MapPoint& point) {
   point.inverse_depth_sigma = relative_sigma * point.inverse_depth;
 }
 
+// A line that no other keyframe sees is gone.
+void takeOutOfLines(const Keyframe& keyframe, Map& map) {
+  for (auto place = map.lines.begin(); place != map.lines.end();) {
+    MapLine& line = place->second;
+    line.seen_in.erase(std::remove(line.seen_in.begin(), line.seen_in.end(), keyframe.id), line.seen_in.end());
+    if (line.seen_in.empty()) {
+      place = map.lines.erase(place);
+      continue;
+    }
+    if (line.host == keyframe.id) {
+      const SpaceLine in_world = inWorld(map, line);
+      line.host = line.seen_in.front();
+      setInWorld(in_world, map, line);
+    }
+    ++place;
+  }
+}
+
 CulledKeyframe takeOut(KeyframeId id, Map& map, Candidates& candidates) {
   const Keyframe& keyframe = map.keyframes[id];
   for (const PointObservation& observation : keyframe.observations) {
@@ -59,6 +77,7 @@ CulledKeyframe takeOut(KeyframeId id, Map& map, Candidates& candidates) {
     }
     if (point.seen_in.empty()) map.points.erase(found);
   }
+  takeOutOfLines(keyframe, map);
   for (auto candidate = candidates.begin(); candidate != candidates.end();) {
     std::vector<KeyframeId>& views = candidate->second;
     views.erase(std::remove(views.begin(), views.end(), id), views.end());
@@ -132,13 +151,17 @@ KeyframeId leastNeeded(const CullingOptions& options, const Map& map) {
 std::size_t memoryOf(const Map& map) {
   std::size_t bytes = 0;
   for (const Keyframe& keyframe : map.keyframes) {
-    bytes += sizeof(Keyframe) + keyframe.observations.capacity() * sizeof(PointObservation);
+    bytes += sizeof(Keyframe) + keyframe.observations.capacity() * sizeof(PointObservation) +
+             keyframe.straight_edges.capacity() * sizeof(SeenEdge);
     if (!keyframe.images) continue;
     for (const cv::Mat& level : keyframe.images->pyramid.levels) bytes += level.total() * level.elemSize();
   }
   constexpr std::size_t node = 4 * sizeof(void*);  // of the ordered map
   for (const auto& [id, point] : map.points) {
     bytes += node + sizeof(id) + sizeof(point) + point.seen_in.capacity() * sizeof(KeyframeId);
+  }
+  for (const auto& [id, line] : map.lines) {
+    bytes += node + sizeof(id) + sizeof(line) + line.seen_in.capacity() * sizeof(KeyframeId);
   }
   return bytes;
 }

@@ -14,6 +14,7 @@ void addKeyframe(const TrackedFrame& frame, KeyframeId id, const Pose& pose, con
   keyframe.world_T_camera = pose;
   keyframe.twist = frame.twist;
   keyframe.observations = frame.observations;
+  keyframe.straight_edges = frame.straight_edges;
   keyframe.images = frame.images;
   keyframe.reason = reason;
   map.keyframes.push_back(std::move(keyframe));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <set>
 
 #include "map/worlds.h"
+#include "mapping/line_bundle.h"
 
 namespace edgeslam {
 namespace {
@@ -72,11 +74,34 @@ int farthestFromFirst(const std::vector<BundleCamera>& cameras) {
   return farthest;
 }
 
+// Where most of the points that the latest keyframe sees are on lines: all keyframes that see one of the lines which
+// the given ones see. Else none.
+std::vector<KeyframeId> allThatSeeTheLines(const LineOptions& options, const Map& map,
+                                           const std::vector<KeyframeId>& keyframes) {
+  const std::map<PointId, LineId> on_lines = pointsOnLines(map, keyframes);
+  int points = 0, points_on_lines = 0;
+  for (const PointObservation& seen : map.keyframes.back().observations) {
+    if (map.points.count(seen.point) == 0) continue;
+    ++points;
+    points_on_lines += on_lines.count(seen.point) > 0 ? 1 : 0;
+  }
+  if (points_on_lines == 0 || points_on_lines < options.bare_share * points) return {};
+  std::set<LineId> lines;
+  for (const auto& [point, line] : on_lines) lines.insert(line);
+  std::set<KeyframeId> all(keyframes.begin(), keyframes.end());
+  for (const LineId line : lines) {
+    const std::vector<KeyframeId>& seen_in = map.lines.at(line).seen_in;
+    all.insert(seen_in.begin(), seen_in.end());
+  }
+  return {all.begin(), all.end()};
+}
+
 }  // namespace
 
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map) {
   assert(!map.keyframes.empty());
-  const std::vector<KeyframeId> free = covisibleKeyframes(map, options);
+  std::vector<KeyframeId> free = covisibleKeyframes(map, options);
+  if (const std::vector<KeyframeId> all = allThatSeeTheLines(options.lines, map, free); !all.empty()) free = all;
   // Keyframes that share most points with the free ones hold the gauge.
   std::vector<int> shared(numberOfKeyframes(map), 0);
   for (const KeyframeId keyframe : free) {
@@ -119,14 +144,20 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   for (const KeyframeId keyframe : fixed) addCamera(keyframe, true);
   if (hold_oldest) problem.scale_camera = farthestFromFirst(problem.cameras);
 
+  const auto cameraOf = [&](KeyframeId keyframe) {
+    if (camera_of[static_cast<std::size_t>(keyframe)] < 0) addCamera(keyframe, true);
+    return camera_of[static_cast<std::size_t>(keyframe)];
+  };
+  const LinesInBundle lines = addLines(ordered_free, map, cameraOf, problem);
+
   std::vector<PointId> used_points;
   std::vector<std::pair<PointId, KeyframeId>> observed;
   for (const PointId id : points) {
+    if (lines.line_of_point.count(id) > 0) continue;
     const MapPoint& point = map.points.at(id);
-    if (camera_of[static_cast<std::size_t>(point.host)] < 0) addCamera(point.host, true);
     const int index = static_cast<int>(problem.points.size());
     BundlePoint bundle_point;
-    bundle_point.host = camera_of[static_cast<std::size_t>(point.host)];
+    bundle_point.host = cameraOf(point.host);
     bundle_point.host_bearing = point.host_bearing;
     bundle_point.inverse_depth = point.inverse_depth;
     problem.points.push_back(bundle_point);
@@ -151,6 +182,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
     point.inverse_depth = problem.points[i].inverse_depth;
     if (result.depth_sigmas[i] > 0) point.inverse_depth_sigma = result.depth_sigmas[i];
   }
+  readLines(camera, options.lines, problem, result, lines, map);
   std::vector<std::pair<PointId, KeyframeId>> outliers;
   for (std::size_t k = 0; k < observed.size(); ++k) {
     if (!(result.errors[k] < options.outlier)) outliers.push_back(observed[k]);

@@ -1,10 +1,12 @@
-// P18, P19: bundle adjustment of the new keyframe, its covisible keyframes and all the points that they see; keyframes
-// outside that see these points are held fixed.
+// P18, P19: bundle adjustment of the new keyframe, its covisible keyframes and all the points and lines that they see;
+// keyframes outside that see these are held fixed. Where hardly more than lines are in view, which few keyframes see
+// well together, all that see them are free.
 #pragma once
 
 #include "adjustment/bundle_adjustment.h"
 #include "geometry/camera.h"
 #include "map/map.h"
+#include "mapping/line_options.h"
 
 namespace edgeslam {
 
@@ -16,6 +18,7 @@ struct LocalAdjustmentOptions {
   double outlier = 5.0;          // whitened; larger than noise allows: old points seen again after drift must stay in
   double largest_depth_sigma = 0.5;  // points whose depth is less certain than this share of it are taken out
   BundleOptions bundle{8, 2.0};
+  LineOptions lines;
 };
 
 // Adjusts around the latest keyframe; takes out outliers and points that lost their depth. False where the solver

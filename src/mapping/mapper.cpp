@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "mapping/line_association.h"
+#include "mapping/line_placement.h"
+
 namespace edgeslam {
 
 void Mapper::goOnWith(Map map) {
@@ -66,6 +69,9 @@ void Mapper::stand() {
     map_.keyframes.push_back(std::move(keyframe));
   }
   map_.points.merge(begun.points);
+  for (const KeyframeId keyframe : keyframesOf(map_, world_)) {
+    associateLines(camera_, options_.local_adjustment.lines, keyframe, map_);
+  }
   description_ = initialisation_.description();
   if (map_.keyframes.front().world == world_) first_description_ = description_;
 }
@@ -112,11 +118,14 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   keyframe.world_T_camera = world_T_camera;
   keyframe.twist = twist;
   keyframe.observations = frame.observations;
+  keyframe.straight_edges = frame.straight_edges;
   keyframe.images = frame.images;
   keyframe.reason = frame.reason;
   map_.keyframes.push_back(std::move(keyframe));
   associate(map_, candidates_);
   addNewPoints(camera_, options_.new_points, map_, candidates_);
+  associateLines(camera_, options_.local_adjustment.lines, map_.keyframes.back().id, map_);
+  placeLines(camera_, options_.local_adjustment.lines, map_);
   adjustLocally(camera_, options_.local_adjustment, map_);
   const std::vector<CulledKeyframe> culled = cullKeyframes(options_.culling, map_, candidates_);
   culled_.insert(culled_.end(), culled.begin(), culled.end());

@@ -8,7 +8,10 @@ constexpr std::size_t longest_reason = 256;
 }  // namespace
 
 LiveChannels::LiveChannels(int width, int height, std::size_t observations) : frames(width, height) {
-  messages.forEachSlot([&](MappingMessage& message) { message.frame.observations.reserve(observations); });
+  messages.forEachSlot([&](MappingMessage& message) {
+    message.frame.observations.reserve(observations);
+    message.frame.straight_edges.reserve(observations);
+  });
   results.forEachSlot([](PublishedFrame& published) {
     published.result.reason.reserve(longest_reason);
     published.problem.reserve(longest_reason);

@@ -14,6 +14,7 @@ LiveTracking::LiveTracking(const Camera& camera, const Settings& settings, LiveC
     : channels_(channels), sink_(sink), worker_(camera, settings) {
   for (MappingMessage& message : new_messages_.all()) {
     message.frame.observations.reserve(static_cast<std::size_t>(settings.points.count));
+    message.frame.straight_edges.reserve(static_cast<std::size_t>(settings.points.count));
   }
 }
 

@@ -16,6 +16,7 @@ TrackingWorker::TrackingWorker(const Camera& camera, const Settings& settings)
       tracker_(camera, settings.edges, settings.points, settings.tracking) {
   for (std::string* text : {&result_.reason, &not_found_, &start_reason_}) text->reserve(longest_reason);
   for_mapping_.observations.reserve(static_cast<std::size_t>(settings.points.count));
+  for_mapping_.straight_edges.reserve(static_cast<std::size_t>(settings.points.count));
 }
 
 void TrackingWorker::take(MapUpdate& update) {

@@ -98,6 +98,9 @@ void moveAlong(const std::map<KeyframeId, Similarity>& moves, int world, Map& ma
     point.inverse_depth /= scale;
     point.inverse_depth_sigma /= scale;
   }
+  for (auto& [id, line] : map.lines) {
+    if (map.keyframes[line.host].world == world) line.in_host.point *= moveOf(line.host).scale;
+  }
 }
 
 }  // namespace

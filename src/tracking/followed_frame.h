@@ -14,7 +14,8 @@ namespace edgeslam {
 struct FollowedFrame {
   std::shared_ptr<const FrameImages> images;
   std::shared_ptr<EdgeMap> edges;
-  std::vector<Track> tracks;  // ascending ids
+  std::vector<Track> tracks;             // ascending ids
+  std::vector<SeenEdge> straight_edges;  // of a frame that mapping gets to see
   Pose world_T_camera;
   Twist twist = Twist::Zero();             // of the camera as its rows were read; 0 where they are read at once
   Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation], in the map as it is

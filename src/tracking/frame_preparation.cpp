@@ -43,6 +43,7 @@ bool FramePreparation::prepare(std::int64_t frame_index, std::int64_t time_ns, c
   accuracy_.noise_factor = noise_factor;
   clock.finished(Stage::edges);
   frame.tracks.clear();
+  frame.straight_edges.clear();
   frame.covariance.setZero();
   frame.inlier_count = 0;
   frame.outlier_share = 0;

@@ -1,6 +1,11 @@
 #include "tracking/tracked_frame.h"
 
 namespace edgeslam {
+namespace {
+
+constexpr double unknown_along = 1000;  // standard deviation [px]
+
+}  // namespace
 
 void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole& role, TrackedFrame& description) {
   description.frame_index = frame.images->frame_index;
@@ -13,11 +18,16 @@ void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole&
   description.noise_factor = role.noise_factor;
   description.world = role.world;
   description.images = role.kind == FrameKind::start ? nullptr : frame.images;
+  description.straight_edges.assign(frame.straight_edges.begin(), frame.straight_edges.end());
   description.observations.clear();
   for (const Track& track : frame.tracks) {
-    const Measurement measurement = measurementOf(track);
+    const int straight_edge = frame.straight_edges.empty() ? -1 : track.straight_edge;
+    Measurement measurement = measurementOf(track);
+    // Along a straight edge nothing is known, whatever its patch seems to say.
+    if (straight_edge >= 0 && !track.corner) measurement.sigma_tangent = unknown_along;
     const Ray ray = rayOfRow(camera, frame.twist, measurement.pixel.y(), bearing(camera, measurement.pixel));
-    description.observations.push_back({track.id, measurement, ray.direction, track.corner, track.chain, track.order});
+    description.observations.push_back(
+        {track.id, measurement, ray.direction, track.corner, track.chain, track.order, straight_edge});
   }
 }
 

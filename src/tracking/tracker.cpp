@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/similarity.h"
+#include "tracking/edge_tracks.h"
 
 namespace edgeslam {
 namespace {
@@ -69,7 +70,10 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       noise_(options.noise),
       scratch_memory_(scratch_size),
       scratch_(scratch_memory_.data(), scratch_memory_.size()) {
-  for (FollowedFrame* frame : {&frame_, &last_, &kept_}) frame->tracks.reserve(most_found_again);
+  for (FollowedFrame* frame : {&frame_, &last_, &kept_}) {
+    frame->tracks.reserve(most_found_again);
+    frame->straight_edges.reserve(most_tracks_);
+  }
   reserveForTracking(view_);
 }
 
@@ -114,6 +118,7 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   tell(work);
   remember();
   if (mapStands() || mapping_busy) return is_told;
+  keepEdgesOfStart(last_);
   describe(camera_, last_, {FrameKind::start, -1, ""}, for_mapping);  // P13, P14
   return true;
 }
@@ -181,6 +186,7 @@ bool Tracker::startMap(const char* reason, Work& work) {
     return false;
   }
   work.result.reason = reason;
+  keepEdgesOfStart(frame_);
   describe(camera_, frame_, {FrameKind::first, keyframes_.firstOfWorld(), "first"}, work.for_mapping);
   makeFlatView(work.for_mapping, view_);
   tracks_at_start_ = frame_.tracks.size();
@@ -207,9 +213,18 @@ bool Tracker::selectKeyframe(bool& located, Work& work) {
   return false;
 }
 
+void Tracker::keepEdgesOfStart(FollowedFrame& frame) {
+  scratch_.release();
+  const StraightEdges straight = straightEdges(camera_, *frame.edges, options_.straight_edges, &scratch_);
+  keepStraightEdges(camera_, straight, noise_.factor(), frame, &scratch_);
+}
+
 void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work) {
   reuseMap(frame);
+  const StraightEdges straight = straightEdges(camera_, *frame.edges, options_.straight_edges, &scratch_);
+  putOnStraightEdges(camera_, straight, frame);
   const KeyframeId id = keyframes_.make(frame, preparation_.accuracy());
+  keepStraightEdges(camera_, straight, noise_.factor(), frame, &scratch_);
   describe(camera_, frame, {FrameKind::keyframe, id, reason, noise_.factor(), view_.world}, work.for_mapping);
   // Until mapping answers, the keyframe stands where tracking saw it.
   view_.keyframes.push_back({id, frame.world_T_camera, nullptr, Matrix7d::Zero(), frame.twist});

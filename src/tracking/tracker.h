@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "edges/straight_edges.h"
 #include "geometry/camera.h"
 #include "map/map_view.h"
 #include "tracking/followed_frame.h"
@@ -30,6 +31,7 @@ struct TrackerOptions {
   BlurGateOptions blur_gate;
   LocationOptions location;
   MapReuseOptions map_reuse;
+  StraightEdgeOptions straight_edges;
   KeyframeOptions keyframes;
   WorldUncertaintyOptions uncertainty;
   MeasuredNoiseOptions noise;
@@ -110,6 +112,7 @@ class Tracker {
   bool startMap(const char* reason, Work& work);
   bool tooFewAreLeft();
   bool selectKeyframe(bool& located, Work& work);
+  void keepEdgesOfStart(FollowedFrame& frame);
   void becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work);
   void reuseMapWhenDue(Work& work);
   void reuseMap(FollowedFrame& frame);
