@@ -43,8 +43,13 @@ inline PointObservation madeObservation(PointId point, KeyframeId keyframe, int 
   return observation;
 }
 
+inline SeenEdge madeEdge(LineId line, int width, int height) {
+  const PointObservation from = madeObservation(7, 1, width, height), to = madeObservation(8, 1, width, height);
+  return {line, {from.measurement.pixel, from.bearing}, {to.measurement.pixel, to.bearing}, 1e-4 / 3};
+}
+
 // Keyframes 0, 1, 4 and 9, of which 0 and 4 have images; points 2, 3, 5 and 40000000000. Point 2 is a track without a
-// depth.
+// depth. Line 3, which keyframes 0 and 4 see, is placed, line 8 is not.
 inline SavedMap madeMap(int width, int height) {
   SavedMap saved;
   saved.camera.model = CameraModel::kannala_brandt;
@@ -68,7 +73,11 @@ inline SavedMap madeMap(int width, int height) {
     for (const PointId point : {PointId{2}, PointId{3}, PointId{5}, large}) {
       if (id == 9 && point == 3) continue;
       keyframe.observations.push_back(madeObservation(point, id, width, height));
+      keyframe.observations.back().straight_edge = id == 4 && point == 3 ? 1 : -1;
     }
+    if (id == 0 || id == 4) keyframe.straight_edges.push_back(madeEdge(3, width, height));
+    if (id == 4) keyframe.straight_edges.push_back(madeEdge(8, width, height));
+    if (id == 9) keyframe.straight_edges.push_back(madeEdge(-1, width, height));
     if (id == 0 || id == 4) keyframe.images = madeImages(width, height, id == 0 ? 6 : 2, id);
     saved.map.keyframes.push_back(keyframe);
   }
@@ -87,6 +96,10 @@ inline SavedMap madeMap(int width, int height) {
     if (id == large) point.seen_in = {9};
     saved.map.points.emplace(id, point);
   }
+  saved.map.lines.emplace(
+      3, MapLine{3, 4, {{1.0 / 3, -0.0, 5e-324}, Eigen::Vector3d(1, -2, 3).normalized()}, true, -0.1, 1.0 / 3, {0, 4}});
+  saved.map.lines.emplace(8, MapLine{8, 4, {}, false, 0, 0, {4}});
+  saved.map.next_line = 12;
   return saved;
 }
 

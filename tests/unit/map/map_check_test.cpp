@@ -191,5 +191,42 @@ TEST(MapCheck, ImagesAreGreyAndOfTheCamerasSize) {
   EXPECT_EQ(mapProblem(saved.camera, saved.map), "point 5: is kept under another number");
 }
 
+TEST(MapCheck, StraightEdgesAndLinesKeepToTheRules) {
+  const auto edge = [](SavedMap& saved) -> SeenEdge& { return test::keyframeOf(saved, 4).straight_edges[0]; };
+  const auto line = [](SavedMap& saved) -> MapLine& { return saved.map.lines.at(3); };
+  expectRefused({
+      {"keyframe 4", "straight edge is not there", [](SavedMap& saved) { observed(saved).straight_edge = 2; }},
+      {"keyframe 4", "straight edge is not there", [](SavedMap& saved) { observed(saved).straight_edge = -2; }},
+      {"keyframe 4", "there is no such line", [&](SavedMap& saved) { edge(saved).line = -2; }},
+      {"keyframe 4", "line 5 is not in the map", [&](SavedMap& saved) { edge(saved).line = 5; }},
+      {"keyframe 4", "end is not in the image", [&](SavedMap& saved) { edge(saved).to.pixel.x() = not_a_number; }},
+      {"keyframe 4", "no unit vector", [&](SavedMap& saved) { edge(saved).from.bearing *= 1.1; }},
+      {"keyframe 4", "must be greater than 0", [&](SavedMap& saved) { edge(saved).sigma = 0; }},
+      {"line 3", "no such number", [](SavedMap& saved) { saved.map.next_line = 3; }},
+      {"", "the next line's number is none", [](SavedMap& saved) { saved.map.next_line = -1; }},
+      {"line 3", "its place is out of range", [&](SavedMap& saved) { line(saved).in_host.point.z() = infinity; }},
+      {"line 3", "no unit vector", [&](SavedMap& saved) { line(saved).in_host.direction.setZero(); }},
+      {"line 3", "its extent is none", [&](SavedMap& saved) { line(saved).end = -1; }},
+      {"line 3", "is its host and does not see it", [&](SavedMap& saved) { line(saved).host = 1; }},
+      {"line 3", "keyframe 1, which has no view of it",
+       [&](SavedMap& saved) {
+         line(saved).seen_in = {0, 1, 4};
+       }},
+      {"line 3", "keyframe 2, which is not in the map",
+       [&](SavedMap& saved) {
+         line(saved).seen_in = {0, 2, 4};
+       }},
+      {"line 3", "twice or out of order",
+       [&](SavedMap& saved) {
+         line(saved).seen_in = {0, 4, 4};
+       }},
+      {"line 3", "which is of another world",
+       [](SavedMap& saved) {
+         saved.map.points.clear();
+         test::keyframeOf(saved, 0).world = 1;
+       }},
+  });
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -95,15 +95,15 @@ TEST(MapFile, GivesBackRecordsOfTheLeastLength) {
 }
 
 // The layout as the header tells it, written out.
-TEST(MapFile, AnEmptyMapIsAHeaderACameraAndTwoEmptyLists) {
+TEST(MapFile, AnEmptyMapIsAHeaderACameraAndEmptyLists) {
   SavedMap saved;
   saved.camera = {CameraModel::kannala_brandt, 640, 480, 1.5, 2, 1, 0, {0, 0, 0, 0, -2}, 0.125};
   const std::string zero = littleEndian(0, 8), one = "\0\0\0\0\0\0\xF0\x3F"s, two = "\0\0\0\0\0\0\0\x40"s;
   const std::string content = littleEndian(1, 4) + littleEndian(640, 4) + littleEndian(480, 4) +
                               "\0\0\0\0\0\0\xF8\x3F"s + two + one + zero + zero + zero + zero + zero +
                               "\0\0\0\0\0\0\0\xC0"s + "\0\0\0\0\0\0\xC0\x3F"s;
-  const std::string payload =
-      "CAMR" + littleEndian(92, 8) + content + "KEYF" + littleEndian(8, 8) + zero + "PNTS" + littleEndian(8, 8) + zero;
+  const std::string payload = "CAMR" + littleEndian(92, 8) + content + "KEYF" + littleEndian(8, 8) + zero + "PNTS" +
+                              littleEndian(8, 8) + zero + "LINE" + littleEndian(16, 8) + zero + zero;
   const std::string header = "EDGESLAM MAP\r\n\x1a\n" + littleEndian(3, 4) + littleEndian(payload.size(), 8);
   const std::string bytes = encodeMap(saved);
   EXPECT_EQ(bytes.substr(0, bytes.size() - checksum_size), header + payload);
@@ -119,6 +119,7 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
   observation.corner = true;
   observation.chain = -1;
   observation.order = 10;
+  observation.straight_edge = 38;
   Keyframe keyframe;
   keyframe.id = 11;
   keyframe.world = 3;
@@ -128,23 +129,31 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
   keyframe.twist << 32, 33, 34, 35, 36, 37;
   keyframe.reason = "turn";
   keyframe.observations = {observation};
+  keyframe.straight_edges = {{39, {{40, 41}, {42, 43, 44}}, {{45, 46}, {47, 48, 49}}, 50}};
   MapPoint point{5, 21, {22, 23, 24}, 25, 26, false, 27, 28, 29, {30, 31}};
   SavedMap saved;
   saved.map.keyframes.push_back(keyframe);
   saved.map.points.emplace(5, point);
+  saved.map.lines.emplace(39, MapLine{39, 51, {{52, 53, 54}, {55, 56, 57}}, true, 58, 59, {60}});
+  saved.map.next_line = 61;
   const std::string bytes = encodeMap(saved);
 
   const std::string observed = littleEndian(5, 8) + littleEndian({1, 2, 3, 4, 5, 6, 7, 8, 9}) + '\1' +
-                               littleEndian(0xFFFFFFFF, 4) + littleEndian(10, 4);
+                               littleEndian(0xFFFFFFFF, 4) + littleEndian(10, 4) + littleEndian(38, 4);
+  const std::string edge =
+      littleEndian(39, 8) + littleEndian({40, 41, 42, 43, 44, 45, 46, 47, 48, 49}) + littleEndian({50});
   const std::string keyframes = littleEndian(1, 8) + littleEndian(11, 4) + littleEndian(3, 4) + littleEndian(12, 8) +
                                 littleEndian(~12ULL, 8) + littleEndian({14, 15, 16, 17, 18, 19, 20}) +
                                 littleEndian({32, 33, 34, 35, 36, 37}) + littleEndian(4, 8) + "turn" +
-                                littleEndian(1, 8) + observed + '\0';
+                                littleEndian(1, 8) + observed + littleEndian(1, 8) + edge + '\0';
   const std::string points = littleEndian(1, 8) + littleEndian(5, 8) + littleEndian(21, 4) +
                              littleEndian({22, 23, 24, 25, 26}) + '\0' + littleEndian(27, 4) + littleEndian(28, 4) +
                              littleEndian(29, 4) + littleEndian(2, 8) + littleEndian(30, 4) + littleEndian(31, 4);
-  const std::string sections =
-      "KEYF" + littleEndian(keyframes.size(), 8) + keyframes + "PNTS" + littleEndian(points.size(), 8) + points;
+  const std::string lines = littleEndian(61, 8) + littleEndian(1, 8) + littleEndian(39, 8) + littleEndian(51, 4) +
+                            littleEndian({52, 53, 54, 55, 56, 57}) + '\1' + littleEndian({58, 59}) +
+                            littleEndian(1, 8) + littleEndian(60, 4);
+  const std::string sections = "KEYF" + littleEndian(keyframes.size(), 8) + keyframes + "PNTS" +
+                               littleEndian(points.size(), 8) + points + "LINE" + littleEndian(lines.size(), 8) + lines;
   EXPECT_EQ(bytes.substr(payload_begin + 104, bytes.size() - payload_begin - 104 - checksum_size), sections);
 }
 
@@ -220,8 +229,11 @@ void cut(std::string& bytes, const std::string& section, std::size_t place, std:
   bytes.erase(length + 8 + place, size);
 }
 
-// Which had no readout, and no motion of a keyframe.
+// Which had no lines, no readout, and no motion of a keyframe; of a map without observations.
 std::string inTheSecondVersion(std::string bytes) {
+  constexpr std::size_t no_lines = 4 + 8 + 16;
+  bytes.erase(bytes.size() - checksum_size - no_lines, no_lines);
+  cut(bytes, "KEYF", numberAt(bytes, bytes.find("KEYF") + 4) - 9, 8);  // before the flag
   cut(bytes, "CAMR", 84, 8);
   cut(bytes, "KEYF", 8 + 80, 48);
   overwrite(bytes, 16, littleEndian(2, 4));

@@ -40,6 +40,27 @@ inline void expectSameObservation(const PointObservation& expected, const PointO
   EXPECT_EQ(found.corner, expected.corner);
   EXPECT_EQ(found.chain, expected.chain);
   EXPECT_EQ(found.order, expected.order);
+  EXPECT_EQ(found.straight_edge, expected.straight_edge);
+}
+
+inline void expectSameEdge(const SeenEdge& expected, const SeenEdge& found) {
+  EXPECT_EQ(found.line, expected.line);
+  expectSameBits(expected.from.pixel.data(), found.from.pixel.data(), 2, "an end's pixel");
+  expectSameBits(expected.from.bearing.data(), found.from.bearing.data(), 3, "an end's bearing");
+  expectSameBits(expected.to.pixel.data(), found.to.pixel.data(), 2, "the other end's pixel");
+  expectSameBits(expected.to.bearing.data(), found.to.bearing.data(), 3, "the other end's bearing");
+  expectSameBits(&expected.sigma, &found.sigma, 1, "an edge's sigma");
+}
+
+inline void expectSameLine(const MapLine& expected, const MapLine& found) {
+  EXPECT_EQ(found.id, expected.id);
+  EXPECT_EQ(found.host, expected.host);
+  expectSameBits(expected.in_host.point.data(), found.in_host.point.data(), 3, "a line's point");
+  expectSameBits(expected.in_host.direction.data(), found.in_host.direction.data(), 3, "a line's direction");
+  EXPECT_EQ(found.is_placed, expected.is_placed);
+  expectSameBits(&expected.begin, &found.begin, 1, "a line's begin");
+  expectSameBits(&expected.end, &found.end, 1, "a line's end");
+  EXPECT_EQ(found.seen_in, expected.seen_in);
 }
 
 inline void expectSameKeyframe(const Keyframe& expected, const Keyframe& found) {
@@ -54,6 +75,10 @@ inline void expectSameKeyframe(const Keyframe& expected, const Keyframe& found) 
   ASSERT_EQ(found.observations.size(), expected.observations.size());
   for (std::size_t i = 0; i < expected.observations.size(); ++i) {
     expectSameObservation(expected.observations[i], found.observations[i]);
+  }
+  ASSERT_EQ(found.straight_edges.size(), expected.straight_edges.size());
+  for (std::size_t i = 0; i < expected.straight_edges.size(); ++i) {
+    expectSameEdge(expected.straight_edges[i], found.straight_edges[i]);
   }
   ASSERT_EQ(found.images != nullptr, expected.images != nullptr);
   if (expected.images) expectSameImages(*expected.images, *found.images);
@@ -91,6 +116,12 @@ inline void expectSame(const SavedMap& expected, const SavedMap& found) {
   for (const auto& [id, point] : expected.map.points) {
     ASSERT_EQ(found.map.points.count(id), 1U);
     expectSamePoint(point, found.map.points.at(id));
+  }
+  EXPECT_EQ(found.map.next_line, expected.map.next_line);
+  ASSERT_EQ(found.map.lines.size(), expected.map.lines.size());
+  for (const auto& [id, line] : expected.map.lines) {
+    ASSERT_EQ(found.map.lines.count(id), 1U);
+    expectSameLine(line, found.map.lines.at(id));
   }
 }
 
