@@ -26,6 +26,7 @@ struct CameraOptions {
   cv::Rect region;                 // of the sensor that is read [px]; empty: all of it
   double longest_exposure_ms = 0;  // 0: as the driver has it
   std::vector<ControlSetting> controls;
+  double readout_s = 0;      // of the calibration, for the time stamps; 0: a global shutter, or not known
   int buffers = 4;           // that the driver fills in turn
   bool every_frame = false;  // also those that a newer one has overtaken, for recording
 };

@@ -44,6 +44,7 @@ struct StreamDescription {
   int height = 0;
   std::int64_t frame_interval_ns = 0;  // 0 where it is not known
   bool is_recording = false;           // whose pauses and damages are its own, and no reason to open it again
+  double readout_s = 0;                // from the first row to the last, by the driver; 0: it does not tell
 };
 
 class LiveCamera {

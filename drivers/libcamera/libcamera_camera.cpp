@@ -237,7 +237,8 @@ class LibcameraCamera : public LiveCamera {
       const bool is_boot_time = *sensor_ns > arrival_ns + furthest_ahead_ns;
       stamp = DriverStamp{*sensor_ns - (is_boot_time ? suspended_ns : 0), TimeMeaning::exposure_start};
     }
-    const FrameTime time = middleOfExposure(stamp, exposure_us ? std::int64_t{*exposure_us} * 1000 : 0, arrival_ns);
+    const std::int64_t exposure_ns = exposure_us ? std::int64_t{*exposure_us} * 1000 : 0;
+    const FrameTime time = middleOfExposure(stamp, exposure_ns, options_.readout_s, arrival_ns);
     frame.time_ns = time.time_ns;
     frame.time_meaning = time.meaning;
 

@@ -40,7 +40,7 @@ struct LibcameraListing {
 LibcameraListing listLibcameras();
 
 // One at a time in a program, as libcamera has it. Time stamps are the middle of the exposure where the driver tells
-// its length.
+// its length, of the middle row where the options have the readout.
 OpenedCamera openLibcameraCamera(const CameraOptions& options);
 
 }  // namespace edgeslam

@@ -56,6 +56,7 @@ std::vector<ListedCamera> listV4l2Cameras(const std::string& folder, SystemCalls
       camera.bus = opened.device->bus;
       camera.formats = offeredFormats(*opened.device);
       camera.controls = cameraControls(*opened.device);
+      camera.sensor = sensorRows(*opened.device, presentSize(*opened.device));
     } else if (opened.is_other_device) {
       continue;
     } else {

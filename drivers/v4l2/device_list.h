@@ -1,11 +1,13 @@
 // The cameras that the kernel knows, with the names that stay theirs.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "drivers/v4l2/camera_controls.h"
 #include "drivers/v4l2/offered_formats.h"
+#include "drivers/v4l2/sensor_rows.h"
 #include "drivers/v4l2/system_calls.h"
 
 namespace edgeslam {
@@ -17,7 +19,8 @@ struct ListedCamera {
   std::string card, driver, bus;
   std::vector<OfferedFormat> formats;
   std::vector<CameraControl> controls;
-  std::string problem;  // why it tells nothing of itself (in use, no rights); empty otherwise
+  std::optional<SensorRows> sensor;  // in the present mode, where the driver tells
+  std::string problem;               // why it tells nothing of itself (in use, no rights); empty otherwise
 
   // The name to put into a configuration: by its identity, else its place, else its number.
   const std::string& stableName() const { return !by_id.empty() ? by_id : !by_path.empty() ? by_path : path; }

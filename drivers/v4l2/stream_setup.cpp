@@ -208,4 +208,10 @@ SettledStream settleStream(const CaptureDevice& device, const CameraOptions& opt
   return tryFormat(device, options, formats[*best_format], wanted, offers);  // the last one tried may have been another
 }
 
+cv::Size presentSize(const CaptureDevice& device) {
+  ImageFormat image;
+  if (readFormat(device, image) < 0 || image.width > INT32_MAX || image.height > INT32_MAX) return {};
+  return {static_cast<int>(image.width), static_cast<int>(image.height)};
+}
+
 }  // namespace edgeslam

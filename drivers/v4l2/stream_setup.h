@@ -25,4 +25,7 @@ struct SettledStream {
 // problem, whose text tells what it offers.
 SettledStream settleStream(const CaptureDevice& device, const CameraOptions& options);
 
+// The images' size as the driver has it now [px]; empty where it does not tell.
+cv::Size presentSize(const CaptureDevice& device);
+
 }  // namespace edgeslam

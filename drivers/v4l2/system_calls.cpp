@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -15,6 +16,10 @@ class Kernel : public SystemCalls {
  public:
   int openFile(const char* path) override { return answer(open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC)); }
   void closeFile(int descriptor) override { close(descriptor); }
+  std::uint64_t deviceNumber(int descriptor) override {
+    struct stat file {};
+    return fstat(descriptor, &file) == 0 ? file.st_rdev : 0;
+  }
   int control(int descriptor, unsigned long request, void* argument) override {
     return answer(ioctl(descriptor, request, argument));
   }

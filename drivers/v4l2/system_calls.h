@@ -14,6 +14,7 @@ class SystemCalls {
   virtual ~SystemCalls() = default;
   virtual int openFile(const char* path) = 0;  // for reading and writing, non-blocking
   virtual void closeFile(int descriptor) = 0;
+  virtual std::uint64_t deviceNumber(int descriptor) = 0;  // of an open device file, as makedev(); 0: it is none
   virtual int control(int descriptor, unsigned long request, void* argument) = 0;  // ioctl
   virtual int map(int descriptor, std::size_t length, std::int64_t offset, void** memory) = 0;
   virtual void unmap(void* memory, std::size_t length) = 0;

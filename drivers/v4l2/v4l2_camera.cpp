@@ -16,6 +16,7 @@
 #include "drivers/v4l2/capture_device.h"
 #include "drivers/v4l2/limited_exposure.h"
 #include "drivers/v4l2/offered_formats.h"
+#include "drivers/v4l2/sensor_rows.h"
 #include "drivers/v4l2/stream_setup.h"
 
 namespace edgeslam {
@@ -26,7 +27,11 @@ Capture interrupted(const std::string& text) { return {CaptureEvent::interrupted
 class V4l2Camera : public LiveCamera {
  public:
   V4l2Camera(std::unique_ptr<CaptureDevice> device, const StreamSetup& setup, const CameraOptions& options)
-      : device_(std::move(device)), queue_(*device_), layout_(setup.layout), every_frame_(options.every_frame) {
+      : device_(std::move(device)),
+        queue_(*device_),
+        layout_(setup.layout),
+        every_frame_(options.every_frame),
+        readout_s_(options.readout_s) {
     stream_.camera = device_->path + " (" + device_->card + ")";
     stream_.width = layout_.width;
     stream_.height = layout_.height;
@@ -36,6 +41,7 @@ class V4l2Camera : public LiveCamera {
       stream_.format += ", " + rateText(setup.frame_rate) + " frames/s";
       stream_.frame_interval_ns = std::llround(1e9 / setup.frame_rate);
     }
+    stream_.readout_s = readoutOfImages(*device_, setup);
     exposure_ns_ = fixedExposure(*device_);
   }
 
@@ -99,8 +105,8 @@ class V4l2Camera : public LiveCamera {
 
   Capture finish(const FilledBuffer& buffer, CapturedFrame frame, cv::Mat& grey) {
     const std::int64_t arrival_ns = device_->device.system().now_ns();
-    const FrameTime time =
-        middleOfExposure(stampOfBuffer(buffer.flags, buffer.stamp_s, buffer.stamp_us), exposure_ns_, arrival_ns);
+    const std::optional<DriverStamp> stamp = stampOfBuffer(buffer.flags, buffer.stamp_s, buffer.stamp_us);
+    const FrameTime time = middleOfExposure(stamp, exposure_ns_, readout_s_, arrival_ns);
     frame.time_ns = time.time_ns;
     frame.time_meaning = time.meaning;
     std::string damage;
@@ -125,6 +131,7 @@ class V4l2Camera : public LiveCamera {
   BufferLayout layout_;
   StreamDescription stream_;
   bool every_frame_;
+  double readout_s_;              // of the calibration
   std::int64_t exposure_ns_ = 0;  // where it is set by hand or by us
   std::optional<LimitedExposure> limited_exposure_;
   SequenceCounter counter_;

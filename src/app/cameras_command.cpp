@@ -9,6 +9,7 @@
 #include "app/command_line.h"
 #include "configuration/configuration.h"
 #include "configuration/configuration_capture.h"
+#include "files/format_text.h"
 
 namespace edgeslam {
 namespace {
@@ -64,6 +65,14 @@ void appendCamera(std::string& text, const ListedCamera& camera) {
   if (camera.path != camera.stableName()) indent(text, "now " + camera.path, 1);
   if (!camera.problem.empty()) return indent(text, camera.problem, 1);
   indent(text, camera.card + ", driver " + camera.driver + ", at " + camera.bus, 1);
+  if (camera.sensor) {
+    indent(text,
+           formatted(
+               "its sensor now gives %d x %d px and reads the rows over %.1f ms; for a rolling shutter, and images "
+               "of all these rows: camera.readout: %.4f",
+               camera.sensor->width, camera.sensor->height, 1e3 * camera.sensor->readout_s, camera.sensor->readout_s),
+           1);
+  }
   indent(text, "formats:", 1);
   for (const OfferedFormat& format : camera.formats) {
     if (format.format) {
@@ -145,6 +154,9 @@ nlohmann::json camerasJson(const std::vector<ListedCamera>& cameras, const Libca
                                {"problem", camera.problem},
                                {"formats", formats},
                                {"controls", controls}});
+    if (!camera.sensor) continue;
+    json["cameras"].back()["sensor"] = {
+        {"width", camera.sensor->width}, {"height", camera.sensor->height}, {"readout_s", camera.sensor->readout_s}};
   }
   for (const ListedLibcamera& camera : libcameras.cameras) {
     nlohmann::json formats = nlohmann::json::array(), controls = nlohmann::json::array();

@@ -68,11 +68,14 @@ struct Session {
 
 Session sessionOf(const RecordOptions& options) {
   Session session;
+  std::optional<double> readout_s;
   if (!options.configuration.empty()) {
     const Configuration configuration = readConfiguration(options.configuration);
     session = {configuration.capture, configuration.camera};
+    readout_s = configuration.readout_s;
   }
   if (!options.calibration.empty()) session.calibration = readCalibration(options.calibration);
+  session.camera.readout_s = readout_s.value_or(session.calibration ? session.calibration->readout_s : 0);
   if (!options.device.empty()) session.camera.device = options.device;
   if (session.calibration && session.camera.width == 0) {
     session.camera.width = session.calibration->width;

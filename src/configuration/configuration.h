@@ -33,8 +33,9 @@ struct Configuration {
   std::optional<Camera> camera;  // where the file gives one
   // Where the file gives it without a calibration: instead of that of whatever calibration is taken.
   std::optional<double> readout_s;
-  Pose body_T_camera;     // of the camera on the robot, translation [m]; the identity unless the file gives it
-  CameraOptions capture;  // the live camera
+  bool has_readout = false;  // the file gives camera.readout, by itself or beside the calibration
+  Pose body_T_camera;        // of the camera on the robot, translation [m]; the identity unless the file gives it
+  CameraOptions capture;     // the live camera
   ServiceOptions service;
   std::string source;  // path of the file; empty for the defaults
 };

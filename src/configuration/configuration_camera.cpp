@@ -219,6 +219,7 @@ void readCameraSection(const YAML::Node& section, Configuration& configuration, 
   }
   if (readout) readReadout(readout, configuration, tell);
   if (configuration.camera) configuration.camera = withReadout(*configuration.camera, configuration);
+  if (readout || has_calibration) configuration.has_readout = configuration.readout_s.has_value();
   // Beside a calibration it is of that one, and not of another that takes its place.
   if (readout && has_calibration) configuration.readout_s.reset();
   if (pose) {

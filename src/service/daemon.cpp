@@ -5,6 +5,7 @@
 
 #include "drivers/cameras/open_camera.h"
 #include "map/saved_map.h"
+#include "service/readout_check.h"
 
 namespace edgeslam {
 namespace {
@@ -27,7 +28,9 @@ Daemon::Daemon(DaemonSetup setup, EventLog& log)
 
 void Daemon::openCamera() {
   std::string problem;
-  camera_ = openOrAwaitCamera(setup_.capture, {setup_.camera.width, setup_.camera.height}, problem);
+  CameraOptions options = setup_.capture;
+  options.readout_s = setup_.camera.readout_s;
+  camera_ = openOrAwaitCamera(options, {setup_.camera.width, setup_.camera.height}, problem);
   link_.setCameraProblem(problem);
   const StreamDescription& stream = camera_->stream();
   log_.tell(problem.empty() ? "camera: " + stream.camera + ", " + stream.format : "waiting for the camera: " + problem);
@@ -83,6 +86,13 @@ void Daemon::tellProcessorProblems(const LiveRun& run) {
   }
 }
 
+// Of the camera that gave the first frame: it may have been waited for.
+void Daemon::tellReadout() {
+  const std::string line =
+      readoutLine(setup_.camera.readout_s, setup_.configuration.has_readout, camera_->stream().readout_s);
+  if (!line.empty()) log_.tell(line);
+}
+
 Daemon::RunEnd Daemon::capture(LiveRun& run) {
   while (!signals_.end()) {
     if (signals_.takeMapWish()) link_.askForMapToBeSaved();
@@ -98,6 +108,7 @@ Daemon::RunEnd Daemon::capture(LiveRun& run) {
       return {std::nullopt, true};
     }
     intake_->take(captured, run);
+    if (captured.event == CaptureEvent::frame && !std::exchange(readout_told_, true)) tellReadout();
   }
   return {};
 }

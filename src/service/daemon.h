@@ -38,6 +38,7 @@ class Daemon {
   void beginRecording();
   void oneRun();
   void tellProcessorProblems(const LiveRun& run);
+  void tellReadout();
   RunEnd capture(LiveRun& run);
   void beginNext(const Command& command, LiveRun& run);
   void finish(const Map& map);
@@ -56,6 +57,7 @@ class Daemon {
   std::optional<Map> map_;  // that the run to come continues
   bool ended_ = false;
   bool processors_told_ = false;
+  bool readout_told_ = false;
 
   NextRecording next_recording_;  // last: the others outlive what it does in the background
 };

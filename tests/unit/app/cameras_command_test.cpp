@@ -58,6 +58,20 @@ TEST_F(CamerasCommandTest, JsonTellsTheSame) {
   EXPECT_EQ(camera["controls"][0]["value"], 20);
 }
 
+TEST_F(CamerasCommandTest, TheReadoutIsShownWhereTheDriverTellsIt) {
+  EXPECT_EQ(camerasText(listed_, {}).find("readout"), std::string::npos);
+  EXPECT_EQ(camerasJson(listed_, {})["cameras"][0].count("sensor"), 0U);
+  driver_.own_numbers = {{V4L2_CID_PIXEL_RATE, 1'000'000}, {V4L2_CID_HBLANK, 136}};
+  listed_ = listV4l2Cameras(dev_.path(), driver_);
+  const std::string text = camerasText(listed_, {});
+  for (const char* part : {"64 x 48 px", "over 9.4 ms", "camera.readout: 0.0094"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
+  const nlohmann::json sensor = camerasJson(listed_, {})["cameras"][0]["sensor"];
+  EXPECT_EQ(sensor["height"], 48);
+  EXPECT_DOUBLE_EQ(sensor["readout_s"].get<double>(), 47 * 200e-6);
+}
+
 TEST(CamerasCommand, NoCameraIsToldAndSoIsAMissingLibcamera) {
   const std::string text = camerasText({}, {{}, "", "left out"});
   EXPECT_EQ(text, "no camera is there\nlibcamera: left out\n");

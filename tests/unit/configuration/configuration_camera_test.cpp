@@ -85,6 +85,17 @@ TEST(ConfigurationCamera, AReadoutByItselfIsOfWhateverCalibrationIsTaken) {
   EXPECT_EQ(again.readout_s, 0.02);
 }
 
+// Also as 0, which a calibration without it has as well.
+TEST(ConfigurationCamera, WhetherTheReadoutIsGivenIsKnown) {
+  const auto has = [](const std::string& camera) { return configurationOf("camera: {" + camera + "}\n").has_readout; };
+  EXPECT_TRUE(has("readout: 0"));
+  EXPECT_TRUE(has("calibration: cameras/known.yaml, readout: 0"));
+  EXPECT_TRUE(has(calibration + ", readout: 0"));
+  EXPECT_FALSE(has("calibration: cameras/rolling.yaml"));
+  EXPECT_FALSE(has(calibration));
+  EXPECT_FALSE(configurationOf("").has_readout);
+}
+
 // Of two configurations, of which one includes the other, the latter's calibration or readout counts.
 double includedReadout(const std::string& base, const std::string& text) {
   const TemporaryFolder folder;

@@ -1,7 +1,10 @@
 // A V4L2 driver that lives in memory and fails where a test says so.
 #pragma once
 
+#include <linux/media.h>
+#include <linux/v4l2-subdev.h>
 #include <linux/videodev2.h>
+#include <sys/sysmacros.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -50,6 +53,15 @@ class FakeDriver : public SystemCalls {
   std::uint32_t data_offset = 0;
   bool has_crop = false;
   v4l2_rect crop{0, 0, 128, 96};
+  // By VIDIOC_G_EXT_CTRLS: of the video device, and of the sensor, which is a sub-device of its own.
+  std::map<std::uint32_t, std::int64_t> own_numbers, sensor_numbers;
+  std::uint32_t sensor_width = 64, sensor_height = 48;
+  // The media device of video7 (81:7); empty: there is none. The sensor's file is 81:9.
+  std::uint64_t device_number = makedev(81, 7);
+  std::vector<media_v2_entity> entities;
+  std::vector<media_v2_interface> interfaces;
+  std::vector<media_v2_pad> pads;
+  std::vector<media_v2_link> links;
 
   // What it saw.
   std::set<void*> mapped;
@@ -81,14 +93,18 @@ class FakeDriver : public SystemCalls {
     return true;
   }
 
-  int openFile(const char*) override {
+  int openFile(const char* path) override {
+    const std::string name = path;
+    const bool is_media = name.rfind("/dev/media", 0) == 0, is_sensor = name == "/dev/char/81:9";
+    if (is_media && (entities.empty() || name != "/dev/media1")) return -ENOENT;
     if (open_failure != 0) return -open_failure;
     if (!plugged) return -ENOENT;
     ++open_files;
-    return 7;
+    return is_media ? media_file : is_sensor ? sensor_file : 7;
   }
   void closeFile(int) override { --open_files; }
-  int control(int, unsigned long request, void* argument) override {
+  std::uint64_t deviceNumber(int) override { return device_number; }
+  int control(int file, unsigned long request, void* argument) override {
     std::deque<int>& next = failures[request];
     if (!next.empty()) {
       const int error = next.front();
@@ -96,6 +112,11 @@ class FakeDriver : public SystemCalls {
       if (error != 0) return -error;
     }
     if (!plugged && request != VIDIOC_REQBUFS) return -ENODEV;
+    if (request == VIDIOC_G_EXT_CTRLS) {
+      return number(file == sensor_file ? sensor_numbers : own_numbers, *static_cast<v4l2_ext_controls*>(argument));
+    }
+    if (file == media_file) return tellTopology(*static_cast<media_v2_topology*>(argument));
+    if (file == sensor_file) return tellSensor(*static_cast<v4l2_subdev_format*>(argument));
     return answer(request, argument);
   }
   int map(int, std::size_t length, std::int64_t offset, void** memory) override {
@@ -129,6 +150,39 @@ class FakeDriver : public SystemCalls {
   std::int64_t now_ns() override { return time_ns; }
 
  private:
+  // Descriptors that no real file has: a program's own may be handed to control().
+  static constexpr int media_file = 1'000'008, sensor_file = 1'000'009;
+
+  static int number(const std::map<std::uint32_t, std::int64_t>& numbers, v4l2_ext_controls& asked) {
+    const auto found = numbers.find(asked.controls->id);
+    if (found == numbers.end()) return -EINVAL;
+    if (found->first == V4L2_CID_PIXEL_RATE) {
+      asked.controls->value64 = found->second;
+    } else {
+      asked.controls->value = static_cast<std::int32_t>(found->second);
+    }
+    return 0;
+  }
+  template <typename Part>
+  static void tellParts(const std::vector<Part>& parts, std::uint32_t& count, std::uint64_t told) {
+    count = static_cast<std::uint32_t>(parts.size());
+    if (told != 0) std::copy(parts.begin(), parts.end(), reinterpret_cast<Part*>(told));
+  }
+  int tellTopology(media_v2_topology& told) const {
+    media_v2_topology t = told;
+    std::uint32_t count = 0;
+    tellParts(entities, count, t.ptr_entities), told.num_entities = count;
+    tellParts(interfaces, count, t.ptr_interfaces), told.num_interfaces = count;
+    tellParts(pads, count, t.ptr_pads), told.num_pads = count;
+    tellParts(links, count, t.ptr_links), told.num_links = count;
+    return 0;
+  }
+  int tellSensor(v4l2_subdev_format& format) const {
+    format.format.width = sensor_width;
+    format.format.height = sensor_height;
+    return 0;
+  }
+
   int answer(unsigned long request, void* argument) {
     switch (request) {
       case VIDIOC_QUERYCAP: {

@@ -268,6 +268,24 @@ TEST_F(V4l2CameraTest, AFixedExposureGivesTheMiddleOfTheExposure) {
   EXPECT_EQ(next().frame.time_ns, driver_.time_ns - 20 * ms - 4 * ms);
 }
 
+// Of a driver that tells the readout itself, too: only the calibration says whether the shutter is a rolling one.
+TEST_F(V4l2CameraTest, TheCalibrationsReadoutGivesTheTimeOfTheMiddleRow) {
+  driver_.own_numbers = {{V4L2_CID_PIXEL_RATE, 1'000'000}, {V4L2_CID_HBLANK, 136}};
+  CameraOptions options;
+  for (const double readout_s : {0.0, 0.012, -0.012}) {
+    options.readout_s = readout_s;
+    openWell(options);
+    const std::int64_t half_ns = readout_s == 0 ? 0 : 6 * ms;
+    driver_.buffer_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+    ASSERT_TRUE(fill(1, 0));
+    EXPECT_EQ(next().frame.time_ns, driver_.time_ns - 20 * ms + half_ns);
+    driver_.buffer_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_EOF;
+    ASSERT_TRUE(fill(1, 1));
+    EXPECT_EQ(next().frame.time_ns, driver_.time_ns - 20 * ms - half_ns);
+    expectReleased();
+  }
+}
+
 TEST_F(V4l2CameraTest, ALimitedExposureIsRegulatedBelowItsLimit) {
   driver_.controls[V4L2_CID_EXPOSURE_AUTO] = {
       "Auto Exposure", V4L2_CTRL_TYPE_MENU, 0, 3, 1, 3, {{1, "Manual Mode"}, {3, "Aperture Priority Mode"}}};
