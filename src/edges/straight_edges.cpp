@@ -38,7 +38,11 @@ class ChainPieces {
  private:
   // Halved at the sample farthest from the plane through its ends, until all are near it (Douglas and Peucker, 1973).
   void split(Piece piece) {
-    if (length(piece) < options_.least_length) return;
+    if (static_cast<double>((piece.last - piece.first) * sample_step) < options_.least_length) return;
+    if (length(piece) < options_.least_length) {
+      splitWhereItTurnsBack(piece);
+      return;
+    }
     const Eigen::Vector3d normal = planeThrough(samples_[piece.first].bearing, samples_[piece.last].bearing);
     std::size_t farthest = piece.first;
     double largest = options_.largest_offset / focal_length_;
@@ -51,6 +55,16 @@ class ChainPieces {
     if (farthest == piece.first) {
       pieces_.push_back(piece);
       return;
+    }
+    split({piece.first, farthest});
+    split({farthest, piece.last});
+  }
+
+  // The ends of a closed chain are no line: halved at the sample farthest from its first one.
+  void splitWhereItTurnsBack(Piece piece) {
+    std::size_t farthest = piece.first + 1;
+    for (std::size_t i = farthest; i < piece.last; ++i) {
+      if (length({piece.first, i}) > length({piece.first, farthest})) farthest = i;
     }
     split({piece.first, farthest});
     split({farthest, piece.last});
