@@ -85,13 +85,11 @@ std::string keyframeProblem(const Camera& camera, const Keyframe& keyframe) {
     if (observation.point <= before) return place + "comes after that of point " + std::to_string(before);
     const std::string problem = observationProblem(camera, observation);
     if (!problem.empty()) return place + problem;
-    before = observation.point;
-  }
-  for (const PointObservation& observation : keyframe.observations) {
     if (observation.straight_edge < -1 ||
         observation.straight_edge >= static_cast<std::int64_t>(keyframe.straight_edges.size())) {
-      return "observation of point " + std::to_string(observation.point) + ": its straight edge is not there";
+      return place + "its straight edge is not there";
     }
+    before = observation.point;
   }
   for (const SeenEdge& edge : keyframe.straight_edges) {
     const std::string problem = straightEdgeProblem(camera, edge);

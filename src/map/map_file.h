@@ -15,10 +15,11 @@
 //          [ns], world_T_camera (rotation w x y z, translation x y z, f64), twist (translation [map units/s], rotation
 //          [rad/s], 6 f64; not in versions 1 and 2: 0), reason text (ASCII), list of observations (points ascending),
 //          list of straight edges (not in versions 1 and 2), has images flag; where 1: frame index i64 and time i64
-//          [ns] of the images, pyramid levels i32, image (grey 8-bit PNG) observation: point i64, pixel x y f64, normal
-//          x y f64, sigma across and along the edge f64 [px], bearing x y z f64, corner flag, chain i32, order i32,
-//          straight edge i32 (index; not in versions 1 and 2: -1) straight edge: line i64, of each of its two ends
-//          pixel x y f64 [px] and bearing x y z f64, sigma f64 [rad]
+//          [ns] of the images, pyramid levels i32, image (grey 8-bit PNG)
+//          * observation: point i64, pixel x y f64, normal x y f64, sigma across and along the edge f64 [px], bearing
+//          x y z f64, corner flag, chain i32, order i32, straight edge i32 (index; not in versions 1 and 2: -1)
+//          * straight edge: line i64 (-1: none), of each of its two ends pixel x y f64 [px] and bearing x y z f64,
+//          sigma f64 [rad]
 //   PNTS   list of points, ids ascending: id i64, host i32, bearing in the host x y z f64, inverse depth and its sigma
 //          f64, corner flag, chain's keyframe i32, chain i32, order i32, seen in (list of i32, ascending)
 //   LINE   (not in versions 1 and 2) the next line's id i64, list of lines, ids ascending: id i64, host i32, a point

@@ -34,12 +34,12 @@ struct InitialStructure : InitialStart {
 std::optional<InitialStructure> adjustInitialStructure(const Camera& camera, const InitialFrames& frames,
                                                        InitialStart start, const InitialisationOptions& options);
 
-// Pose first_T_camera of a frame that sees the first one's points, adjusted from a pose near it. Points with an inverse
-// depth that is not positive are left out. Nothing where the adjustment does not converge.
 // Where the ray of a point of the first frame begins, in its camera frame: not the centre where the camera moved as it
 // read the point's row.
 Eigen::Vector3d rayOrigin(const Camera& camera, const TrackedFrame& first, const PointObservation& point);
 
+// Pose first_T_camera of a frame that sees the first one's points, adjusted from a pose near it. Points with an inverse
+// depth that is not positive are left out. Nothing where the adjustment does not converge.
 std::optional<Pose> locateAgainst(const Camera& camera, const TrackedFrame& first,
                                   const std::vector<double>& inverse_depths, const TrackedFrame& frame,
                                   const Pose& near);

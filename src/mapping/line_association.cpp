@@ -106,6 +106,7 @@ LineId beginLine(KeyframeId host, Map& map) {
 
 void associateLines(const Camera& camera, const LineOptions& options, KeyframeId id, Map& map) {
   Keyframe& keyframe = map.keyframes[id];
+  if (keyframe.straight_edges.empty()) return;
   const std::vector<Votes> votes = votesOf(latestLines(options, map, id), keyframe);
   for (std::size_t i = 0; i < keyframe.straight_edges.size(); ++i) {
     SeenEdge& edge = keyframe.straight_edges[i];

@@ -79,6 +79,7 @@ int farthestFromFirst(const std::vector<BundleCamera>& cameras) {
 std::vector<KeyframeId> allThatSeeTheLines(const LineOptions& options, const Map& map,
                                            const std::vector<KeyframeId>& keyframes) {
   const std::map<PointId, LineId> on_lines = pointsOnLines(map, keyframes);
+  if (on_lines.empty()) return {};
   int points = 0, points_on_lines = 0;
   for (const PointObservation& seen : map.keyframes.back().observations) {
     if (map.points.count(seen.point) == 0) continue;

@@ -24,6 +24,7 @@ int straightEdgeAt(const EdgeMap& edges, const StraightEdges& straight, const Tr
 }  // namespace
 
 void putOnStraightEdges(const Camera& camera, const StraightEdges& straight, FollowedFrame& frame) {
+  if (straight.empty()) return;
   for (Track& track : frame.tracks) {
     const int index = track.corner ? -1 : straightEdgeAt(*frame.edges, straight, track);
     if (index < 0) continue;
@@ -37,12 +38,14 @@ void putOnStraightEdges(const Camera& camera, const StraightEdges& straight, Fol
 
 void keepStraightEdges(const Camera& camera, const StraightEdges& straight, double noise_factor, FollowedFrame& frame,
                        std::pmr::memory_resource* memory) {
+  frame.straight_edges.clear();
+  for (Track& track : frame.tracks) track.straight_edge = -1;
+  if (straight.empty()) return;
   std::pmr::vector<int> tracks(straight.size(), 0, memory), kept(straight.size(), -1, memory);
   for (Track& track : frame.tracks) {
     track.straight_edge = straightEdgeAt(*frame.edges, straight, track);
     if (track.straight_edge >= 0) ++tracks[static_cast<std::size_t>(track.straight_edge)];
   }
-  frame.straight_edges.clear();
   const double sigma = noise_factor * sigma_across / meanFocalLength(camera);
   for (std::size_t i = 0; i < straight.size(); ++i) {
     if (tracks[i] < fewest_tracks) continue;
