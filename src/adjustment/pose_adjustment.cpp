@@ -132,12 +132,26 @@ bool solveDamped(const NormalEquations& equations, double damping, Vector6d& ste
   return step.allFinite();
 }
 
+// What is known of the position beforehand, as a camera with this rotation sees it.
+Eigen::Matrix3d informationInCamera(const PositionPrior& prior, const Pose& world_T_camera) {
+  const Eigen::Matrix3d rotation = world_T_camera.rotation.toRotationMatrix();
+  return rotation.transpose() * prior.information * rotation;
+}
+
+void addPrior(const PositionPrior& prior, const Pose& world_T_camera, NormalEquations& equations) {
+  const Eigen::Vector3d error = world_T_camera.translation - prior.position;
+  const Eigen::Vector3d pull = prior.information * error;
+  equations.cost += error.dot(pull);
+  equations.information.topLeftCorner<3, 3>() += informationInCamera(prior, world_T_camera);
+  equations.gradient.head<3>() += world_T_camera.rotation.conjugate() * pull;
+}
+
 // Levenberg's minimisation with the weights renewed at every step. While far from the solution Huber's threshold is
 // wide, so that a prediction several pixels off does not make every observation an outlier.
 // `shutterAt`: gives the residuals of a camera with a pose.
 template <typename ShutterAt>
-bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observations, const PoseOptions& options,
-              Pose& pose) {
+bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observations, const PositionPrior& prior,
+              const PoseOptions& options, Pose& pose) {
   constexpr int wide_iterations = 3;
   constexpr double wide_factor = 5;
   constexpr double least_damping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
@@ -147,11 +161,16 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
 
   double huber = options.huber * wide_factor;
   double damping = least_damping;
-  NormalEquations equations = linearize(shutterAt(pose), observations, huber, norm_behind_camera);
+  const auto equationsAt = [&](const Pose& at) {
+    NormalEquations equations = linearize(shutterAt(at), observations, huber, norm_behind_camera);
+    addPrior(prior, at, equations);
+    return equations;
+  };
+  NormalEquations equations = equationsAt(pose);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     if (iteration == wide_iterations) {
       huber = options.huber;
-      equations = linearize(shutterAt(pose), observations, huber, norm_behind_camera);
+      equations = equationsAt(pose);
     }
     bool accepted = false, small = false;
     while (!accepted && damping <= most_damping) {
@@ -160,7 +179,7 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
       // In units of the pose's own standard deviation, so free of scale.
       small = step.dot(equations.information * step) < 1e-8;
       const Pose candidate = retract(pose, step);
-      const NormalEquations at_candidate = linearize(shutterAt(candidate), observations, huber, norm_behind_camera);
+      const NormalEquations at_candidate = equationsAt(candidate);
       accepted = at_candidate.cost <= equations.cost;
       if (accepted) {
         pose = candidate;
@@ -180,11 +199,12 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
   return pose.rotation.coeffs().allFinite() && pose.translation.allFinite();
 }
 
-// Inliers, rms and covariance at the final pose.
+// Inliers, rms and covariance at the final pose. `prior_information`: of the position, in the camera frame.
 template <typename Shutter>
-bool judge(const Shutter& shutter, const PreparedObservations& observations, const PoseOptions& options,
-           PoseResult& result) {
+bool judge(const Shutter& shutter, const PreparedObservations& observations, const Eigen::Matrix3d& prior_information,
+           const PoseOptions& options, PoseResult& result) {
   Matrix6d information = Matrix6d::Zero();
+  information.topLeftCorner<3, 3>() = prior_information;
   Eigen::Array2d weighted_squares = Eigen::Array2d::Zero();  // across the edge, along it
   double squares = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -238,7 +258,8 @@ PoseObservation observeWithDepth(const Camera& camera, const Pose& camera_T_host
 }
 
 PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
-                      const PoseOptions& options, std::pmr::memory_resource* memory, const RowMotion& motion) {
+                      const PoseOptions& options, std::pmr::memory_resource* memory, const RowMotion& motion,
+                      const PositionPrior& prior) {
   PoseResult result(memory);
   result.world_T_camera = initial_world_T_camera;
   result.inliers.assign(observations.size(), 0);
@@ -247,8 +268,8 @@ PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, 
   const PreparedObservations prepared = prepare(camera, observations, memory);
   const auto adjust = [&](const auto& shutterAt) {
     Pose pose = initial_world_T_camera;
-    result.converged =
-        minimize(shutterAt, prepared, options, pose) && judge(shutterAt(pose), prepared, options, result);
+    result.converged = minimize(shutterAt, prepared, prior, options, pose) &&
+                       judge(shutterAt(pose), prepared, informationInCamera(prior, pose), options, result);
     if (result.converged) result.world_T_camera = pose;
   };
   if (camera.readout_s == 0) {

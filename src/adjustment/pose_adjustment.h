@@ -42,6 +42,12 @@ struct PoseOptions {
   int fewest = 10;       // fewer observations, or inliers at the end: no pose
 };
 
+// Where the camera is held to be before anything is measured.
+struct PositionPrior {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();     // world frame
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // inverse covariance, world frame; zero: nothing is known
+};
+
 struct PoseResult {
   explicit PoseResult(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : inliers(memory), errors_across(memory) {}
@@ -61,11 +67,12 @@ struct PoseResult {
 };
 
 // The pose is that of the middle row; where the camera reads its rows one after another, `motion` ties the other rows'
-// poses to it. Observations behind the camera, or with values that are not finite, count as outliers. `memory` serves
-// the result and what is needed on the way.
+// poses to it. `prior` counts beside the observations, in the pose and in its covariance. Observations behind the
+// camera, or with values that are not finite, count as outliers. `memory` serves the result and what is needed on the
+// way.
 PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
                       const PoseOptions& options, std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
-                      const RowMotion& motion = {});
+                      const RowMotion& motion = {}, const PositionPrior& prior = {});
 
 // Inverse covariance of the right-hand update [translation; rotation] that the observations' standard deviations give a
 // camera there, whatever the residuals are.

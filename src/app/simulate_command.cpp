@@ -87,9 +87,10 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command
       ->add_option("--turn", options->turned,
-                   "Frames in which the camera turns on the spot, 40 degrees to the side and back, FIRST:COUNT; may be "
-                   "repeated")
+                   "Frames in which the camera turns on the spot, to the side and back, FIRST:COUNT; may be repeated")
       ->allow_extra_args(false);
+  command->add_option("--turn-angle", simulation.turn_deg, "How far it turns then [deg], -180 to 180")
+      ->capture_default_str();
   command->add_flag("--force", options->force, "Write to a folder that is not empty");
   command->callback([options, &exit_code] { exit_code = simulate(*options); });
 }

@@ -168,6 +168,7 @@ Keys methodKeys(Settings& settings) {
   EdgeOptions& edges = settings.edges;
   PointChoiceOptions& points = settings.points;
   TrackerOptions& tracking = settings.tracking;
+  OrientationOnlyOptions& orientation_only = tracking.location.orientation_only;
   BlurGateOptions& blur_gate = tracking.blur_gate;
   FramePoseOptions& pose = tracking.location.pose;
   FlowOptions& flow = tracking.location.flow;
@@ -307,6 +308,17 @@ Keys methodKeys(Settings& settings) {
        "the noise that a camera shows scales what is presumed at most so many times; 1: it is not measured"},
       {"tracking.least_inlier_share", &tracking.location.acceptance.least_inlier_share, "", 0, 1,
        "of the map points followed: fewer agree, and the pose is not believed"},
+
+      heading("orientation_only",
+              "Orientation without position: turns on the spot and fast pans, with little of the map in view"),
+      {"orientation_only.enabled", &orientation_only.enabled, "", 0, 0,
+       "the position is held, with its covariance growing; false: the pose is lost then"},
+      {"orientation_only.speed", &orientation_only.speed, "1/s", 0.01, 10,
+       "how fast the camera may move meanwhile: distances of the scene"},
+      {"orientation_only.least_share", &orientation_only.least_share, "", 0, 1,
+       "of what is followed, that must turn with the camera"},
+      {"orientation_only.largest_position_deviation", &orientation_only.largest_position_deviation, "", 0.01, 10,
+       "share of the scene's distance: less certain, and the pose is lost"},
 
       heading("keyframes", "Choice of the keyframes (P8 to P12)"),
       {"keyframes.rotation_deg", &keyframes.rotation_deg, "deg", 1, 180, "rotation since the last keyframe"},

@@ -39,6 +39,7 @@ struct PointObservation {
 enum class FrameKind {
   first,     // a map is started from it, in place of what there was
   start,     // follows the first frame, while the map does not stand yet
+  spare,     // besides, another start may go on from it (tracking/spare_start.h)
   keyframe,  // extends the map
   lost       // its pose was lost and is looked for
 };
@@ -58,6 +59,7 @@ struct TrackedFrame {
   const char* reason = "";  // which criterion made it a keyframe
   double noise_factor = 1;  // how many times as far as presumed measurements in it err
   int world = 0;            // that its pose is in, or, of a lost frame, that the last pose was in
+  std::int64_t start = -1;  // of a frame that helps a start: the first frame that its pose is against
 };
 
 struct Keyframe {

@@ -10,10 +10,18 @@ namespace {
 
 constexpr std::size_t most_frames = 400;
 
+void keepPointsOf(const TrackedFrame& first, TrackedFrame& frame) {
+  std::vector<PointObservation> kept;
+  kept.reserve(frame.observations.size());
+  forEachCommon(first, frame, [&](std::size_t, std::size_t j) { kept.push_back(frame.observations[j]); });
+  frame.observations = std::move(kept);
+}
+
 }  // namespace
 
 void addFrame(InitialFrames& frames, const TrackedFrame& frame) {
   frames.since.push_back(frame);
+  keepPointsOf(frames.first, frames.since.back());
   if (frames.since.size() <= most_frames) return;
   std::vector<TrackedFrame> thinned;
   for (std::size_t i = 1; i < frames.since.size(); i += 2) thinned.push_back(std::move(frames.since[i]));

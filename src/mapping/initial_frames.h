@@ -15,7 +15,8 @@ struct InitialFrames {
   const TrackedFrame& current() const { return since.back(); }
 };
 
-// Takes over the next frame. Of a camera that hardly moves every second frame is kept.
+// Takes over the next frame, without points that the first one has not. Of a camera that hardly moves every second
+// frame is kept.
 void addFrame(InitialFrames& frames, const TrackedFrame& frame);
 
 // Indices into `since` of up to `count` frames, spread evenly; the last one is the current frame.

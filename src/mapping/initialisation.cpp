@@ -5,11 +5,19 @@
 
 namespace edgeslam {
 
-void Initialisation::start(const TrackedFrame& first) {
-  frames_ = InitialFrames{first, {}};
+void Initialisation::start(const TrackedFrame& first) { start(InitialFrames{first, {}}); }
+
+void Initialisation::start(InitialFrames frames) {
+  frames_ = std::move(frames);
+  const TrackedFrame& first = frames_.first;
   inverse_depths_.assign(first.observations.size(), 1.0);
   depth_sigmas_.assign(first.observations.size(), flat_start_sigma);
   accepted_ = InitialStructure();
+  Pose first_T_camera;
+  for (TrackedFrame& frame : frames_.since) {
+    first_T_camera = locateAgainst(camera_, first, inverse_depths_, frame, first_T_camera).value_or(first_T_camera);
+    frame.world_T_camera = first_T_camera;
+  }
   waiting_for_ = "motion of the camera";
   changed_ = false;
 }

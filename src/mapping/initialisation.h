@@ -25,6 +25,8 @@ class Initialisation {
 
   // Forgets what was.
   void start(const TrackedFrame& first);
+  // Starts from these frames, most of which were followed against another first one.
+  void start(InitialFrames frames);
   // A frame after the first one. True where the map now stands; then `map()` has it.
   bool add(const TrackedFrame& frame);
 

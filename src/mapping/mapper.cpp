@@ -20,9 +20,10 @@ void Mapper::goOnWith(Map map) {
 bool Mapper::add(const TrackedFrame& frame) {
   switch (frame.kind) {
     case FrameKind::first:
-      start(frame);
+      start({frame, {}});
       return false;
     case FrameKind::start:
+    case FrameKind::spare:
       return goOnStarting(frame);
     case FrameKind::keyframe:
       return addKeyframe(frame);
@@ -32,15 +33,26 @@ bool Mapper::add(const TrackedFrame& frame) {
   return false;
 }
 
-void Mapper::start(const TrackedFrame& first) {
-  makeRoomFor(first.keyframe);
+void Mapper::start(InitialFrames frames) {
+  makeRoomFor(frames.first.keyframe);
   initialised_ = start_stood_ = false;
   candidates_.clear();
-  origin_frame_ = first.frame_index;
-  initialisation_.start(first);
+  spare_.reset();
+  origin_frame_ = frames.first.frame_index;
+  initialisation_.start(std::move(frames));
+}
+
+void Mapper::keepForSpare(const TrackedFrame& frame) {
+  if (frame.kind == FrameKind::spare) {
+    spare_ = InitialFrames{frame, {}};
+  } else if (spare_) {
+    addFrame(*spare_, frame);
+  }
 }
 
 bool Mapper::goOnStarting(const TrackedFrame& frame) {
+  if (spare_ && frame.start == spare_->first.frame_index) start(*std::exchange(spare_, std::nullopt));
+  keepForSpare(frame);
   if (initialised_) {  // it was on its way when the map came to stand, or when an older world was found again
     if (!start_stood_ || starts_.back().world != world_) return false;
     auto& poses = starts_.back().poses;
@@ -90,6 +102,7 @@ void Mapper::goBackTo(KeyframeId keyframe) {
   initialised_ = true;
   world_ = map_.keyframes[keyframe].world;
   candidates_.clear();
+  spare_.reset();
   ++version_;
 }
 
@@ -103,6 +116,7 @@ WorldPose Mapper::inWorldOfToday(WorldPose pose) const {
 }
 
 bool Mapper::addKeyframe(const TrackedFrame& frame) {
+  spare_.reset();
   const auto [world, world_T_camera, twist] = inWorldOfToday({frame.world, frame.world_T_camera, frame.twist});
   if (!initialised_ || world_ != world) {
     makeRoomFor(frame.keyframe);

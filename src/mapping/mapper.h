@@ -53,7 +53,8 @@ class Mapper {
   void goOnWith(Map map);
 
   // Takes over a frame. True where the map, or what it waits for, changed. The first frame of a start begins a world
-  // beside those there are; one that tracking never followed, as it began anew meanwhile, is forgotten.
+  // beside those there are; one that tracking never followed, as it began anew meanwhile, is forgotten. So does the
+  // first that is against a spare start's frame: the start goes on with what was seen since.
   bool add(const TrackedFrame& frame);
 
   // P21: the lost frame's tracks, all without pose, and the last two keyframes. Where it is found the frame becomes a
@@ -93,7 +94,8 @@ class Mapper {
     std::vector<std::pair<std::int64_t, Pose>> poses;  // origin_T_camera
   };
 
-  void start(const TrackedFrame& first);
+  void start(InitialFrames frames);
+  void keepForSpare(const TrackedFrame& frame);
   bool goOnStarting(const TrackedFrame& frame);
   void stand();
   void makeRoomFor(KeyframeId keyframe);
@@ -111,7 +113,8 @@ class Mapper {
   int next_world_ = 0;
   std::size_t starts_given_up_ = 0;
   std::uint64_t version_ = 0;
-  std::int64_t origin_frame_ = -1;  // of the latest start
+  std::int64_t origin_frame_ = -1;      // of the latest start
+  std::optional<InitialFrames> spare_;  // another start that it may go on from
   std::vector<CulledKeyframe> culled_;
   std::vector<Start> starts_;       // of the worlds that stand
   std::map<int, WorldJoin> joins_;  // by the younger world

@@ -15,7 +15,6 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double corridor_step_s = 0.005;
 constexpr double braking_time_s = 0.4;
 constexpr double shake_rise_s = 0.15;
-constexpr double turn_rad = radians(40);
 constexpr double panels_period_s = 26;
 constexpr double room_period_s = 26;
 
@@ -68,7 +67,8 @@ double turnAt(const CameraMotion& motion, double time_s) {
   double angle = 0;
   for (const TimeSpan& span : motion.turned) {
     const double half_s = (span.end_s - span.begin_s) / 2;
-    angle += turn_rad * smoothStep((time_s - span.begin_s) / half_s) * smoothStep((span.end_s - time_s) / half_s);
+    angle +=
+        motion.turn_rad * smoothStep((time_s - span.begin_s) / half_s) * smoothStep((span.end_s - time_s) / half_s);
   }
   return angle;
 }

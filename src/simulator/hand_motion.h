@@ -30,6 +30,7 @@ struct CameraMotion {
   std::vector<TimeSpan> shaken;
   std::vector<TimeSpan> still;               // the camera does not move at all; it brakes and starts just outside
   std::vector<TimeSpan> turned;              // it turns on the spot, to the side and back; it stands still then, too
+  double turn_rad = 0;                       // so far
   double path_phase = 0;                     // [rad], where on its path the camera starts
   std::vector<double> corridor_distances_m;  // corridor: way gone, every corridor_step_s
 };

@@ -7,6 +7,7 @@
 
 #include "edgeslam/input_error.h"
 #include "files/format_text.h"
+#include "geometry/angles.h"
 #include "geometry/rolling_shutter.h"
 #include "simulator/scene_lighting.h"
 
@@ -41,6 +42,7 @@ void checkOptions(const SimulationOptions& options) {
   checkRange("height", options.height, 64, 4096);
   checkRange("noise", options.noise, 0, 60);
   checkRange("exposure", options.exposure_ms, 0, 1000 / options.fps);
+  checkRange("turn-angle", options.turn_deg, -180, 180);
   checkRange("readout", options.readout_ms, -1e3 * longest_readout_s, 1e3 * longest_readout_s);
   const double interval_ms = 1000 / options.fps;
   if (std::abs(options.readout_ms) > interval_ms) {
@@ -173,6 +175,7 @@ SimulatedSequence makeSequence(const SimulationOptions& options) {
   sequence.motion.shaken = timeSpans(options.shaken, options.fps);
   sequence.motion.still = timeSpans(options.still, options.fps);
   sequence.motion.turned = timeSpans(options.turned, options.fps);
+  sequence.motion.turn_rad = radians(options.turn_deg);
   sequence.motion.still.insert(sequence.motion.still.end(), sequence.motion.turned.begin(),
                                sequence.motion.turned.end());
 

@@ -41,7 +41,8 @@ struct SimulationOptions {
   std::vector<FrameRange> covered;  // a hand on the lens
   std::vector<FrameRange> shaken;   // shaken violently
   std::vector<FrameRange> still;    // not moved at all
-  std::vector<FrameRange> turned;   // turned on the spot, 40 degrees to the side and back
+  std::vector<FrameRange> turned;   // turned on the spot, to the side and back ...
+  double turn_deg = 40;             // ... so far
 };
 
 struct SimulatedFrame {

@@ -21,6 +21,8 @@ struct FollowedFrame {
   Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation], in the map as it is
   int inlier_count = 0;                    // map points that agree with the pose
   double outlier_share = 0;                // of the map points in view
+  double scene_depth = 1;                  // median distance of the map points that the last frame saw [map units]
+  bool position_is_held = false;           // the map does not tell it (orientation_only.h)
   NoiseEvidence noise;                     // what the map points in view say, be the pose believed or not
 
   // False before the first frame, and after forget().

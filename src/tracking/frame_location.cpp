@@ -1,21 +1,56 @@
 #include "tracking/frame_location.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "tracking/measurement_accuracy.h"
 
 namespace edgeslam {
+namespace {
+
+// In thousandths, as "0.034".
+void append(double share, std::string& text) {
+  const auto thousandths = static_cast<int>(std::lround(1000 * std::clamp(share, 0.0, 0.999)));
+  text += "0.";
+  text += static_cast<char>('0' + thousandths / 100);
+  text += static_cast<char>('0' + thousandths / 10 % 10);
+  text += static_cast<char>('0' + thousandths % 10);
+}
+
+}  // namespace
+
+// Piece by piece: on the way from a frame to its pose there is no allocation.
+void describe(const LocationFigures& figures, std::string& reason) {
+  reason.assign("map points not found again: ");
+  if (figures.tracks == 0) {
+    reason.append("the last frame with a pose is too long ago");
+  } else if (!figures.has_pose) {
+    reason.append(std::to_string(figures.followed)).append(" of ").append(std::to_string(figures.tracks));
+    reason.append(" tracks followed, too few of them in the map");
+  } else if (figures.agree < figures.asked) {
+    reason.append(std::to_string(figures.agree)).append(" of ").append(std::to_string(figures.in_view));
+    reason.append(" in view agree, ").append(std::to_string(figures.asked)).append(" asked for");
+  } else {
+    reason.append("the pose is uncertain by ");
+    append(figures.deviation, reason);
+    reason.append(", allowed are ");
+    append(figures.most_allowed, reason);
+  }
+}
 
 FrameLocation::FrameLocation(const Camera& camera, const LocationOptions& options)
     : camera_(camera), options_(options), rotation_grids_(makeRotationGrids(camera)) {}
 
 bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const LocationPrior& prior,
-                           FollowedFrame& frame, std::pmr::memory_resource& memory, StageClock& clock) const {
+                           FollowedFrame& frame, LocationFigures& figures, std::pmr::memory_resource& memory,
+                           StageClock& clock) const {
   const FrameImages& from = *last.images;
   const FrameImages& to = *frame.images;
   frame.noise = {};
-  const double scene_depth = medianDepth(last.tracks, view, last.world_T_camera, 1.0, &memory);
-  const AlignmentPoints points = placeTracks(camera_, last.tracks, view, last.world_T_camera, scene_depth, &memory);
+  frame.scene_depth = medianDepth(last.tracks, view, last.world_T_camera, last.scene_depth, &memory);
+  const AlignmentPoints points =
+      placeTracks(camera_, last.tracks, view, last.world_T_camera, frame.scene_depth, &memory);
   const Pose predicted = alignImages(last, points, prior.world_T_predicted, frame, memory);
   clock.finished(Stage::alignment);
 
@@ -25,34 +60,62 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   filterTracks(from, to, *frame.edges, last.tracks, matches, options_.flow, frame.tracks, &memory);
   clock.finished(Stage::flow);
 
-  // P16, once more after the points were refined against their keyframes
-  const FramePose first = estimatePose(camera_, view, frame.tracks, predicted, options_.pose, &memory, prior.motion);
-  if (!first.result.converged) return false;
-  clock.finished(Stage::pose);
-  refineTracks(camera_, view, to, {first.result.world_T_camera, first.result.twist}, scene_depth, options_.refinement,
-               frame.tracks);
-  clock.finished(Stage::refinement);
-  const FramePose pose =
-      estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory, prior.motion);
-  // What the points say of the noise they say of a pose that is refused as well: else it could not rise when it
-  // matters.
-  if (view.initialised) frame.noise = noiseEvidence(pose.result.errors_across, &memory);
-  if (!pose.result.converged) return false;
-  // A flat map fits a scene with depth only here and there: before the map stands every pose is believed.
-  const AcceptanceContext context{last.inlier_count, prior.regains, scene_depth};
-  if (view.initialised && !isBelieved(pose, context, options_.acceptance)) return false;
+  figures = {};
+  figures.followed = static_cast<int>(frame.tracks.size());
+  figures.tracks = static_cast<int>(last.tracks.size());
+  const AcceptanceContext context{last.inlier_count, prior.regains, frame.scene_depth};
+  std::optional<FramePose> pose = poseInMap(view, prior, predicted, context, frame, figures, memory, clock);
+  frame.position_is_held = !pose;
+  if (!pose && view.initialised) {
+    const double seconds = static_cast<double>(to.time_ns - from.time_ns) * 1e-9;
+    const HeldCamera held{last.world_T_camera, last.covariance, seconds, predicted.rotation, frame.scene_depth};
+    pose = orientationOnly(camera_, view, frame.tracks, held, options_.pose, options_.orientation_only, &memory,
+                           prior.motion);
+  }
+  if (!pose) return false;
 
-  frame.world_T_camera = pose.result.world_T_camera;
-  frame.twist = pose.result.twist;
-  frame.covariance = pose.result.covariance;
-  frame.inlier_count = pose.result.inlier_count;
-  const auto in_view = static_cast<double>(pose.track_of_observation.size());
+  frame.world_T_camera = pose->result.world_T_camera;
+  frame.twist = pose->result.twist;
+  frame.covariance = pose->result.covariance;
+  frame.inlier_count = pose->result.inlier_count;
+  const auto in_view = static_cast<double>(pose->track_of_observation.size());
   frame.outlier_share = in_view > 0 ? 1 - frame.inlier_count / in_view : 0;
-  countOutliers(pose, view.initialised, frame.tracks);
-  lockAlongEdges(camera_, view, {frame.world_T_camera, frame.twist}, options_.edge_lock, frame.tracks);
+  countOutliers(*pose, view.initialised, frame.tracks);
+  if (!frame.position_is_held) {
+    lockAlongEdges(camera_, view, {frame.world_T_camera, frame.twist}, options_.edge_lock, frame.tracks);
+  }
   for (Track& track : frame.tracks) updateAccuracy(to.pyramid.levels[0], prior.accuracy, track);
   clock.finished(Stage::pose);
   return true;
+}
+
+// P16, once more after the points were refined against their keyframes. Nothing where the map does not tell the pose.
+std::optional<FramePose> FrameLocation::poseInMap(const MapView& view, const LocationPrior& prior,
+                                                  const Pose& world_T_predicted, const AcceptanceContext& context,
+                                                  FollowedFrame& frame, LocationFigures& figures,
+                                                  std::pmr::memory_resource& memory, StageClock& clock) const {
+  const FramePose first =
+      estimatePose(camera_, view, frame.tracks, world_T_predicted, options_.pose, &memory, prior.motion);
+  if (!first.result.converged) return std::nullopt;
+  clock.finished(Stage::pose);
+  refineTracks(camera_, view, *frame.images, {first.result.world_T_camera, first.result.twist}, context.scene_depth,
+               options_.refinement, frame.tracks);
+  clock.finished(Stage::refinement);
+  FramePose pose =
+      estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory, prior.motion);
+  figures.in_view = static_cast<int>(pose.track_of_observation.size());
+  figures.agree = pose.result.inlier_count;
+  figures.asked = fewestInliers(pose.track_of_observation.size(), context, options_.acceptance);
+  // What the points say of the noise they say of a pose that is refused as well: else it could not rise when it
+  // matters.
+  if (view.initialised) frame.noise = noiseEvidence(pose.result.errors_across, &memory);
+  if (!pose.result.converged) return std::nullopt;
+  figures.has_pose = true;
+  figures.deviation = largestDeviation(pose.result.covariance, context.scene_depth);
+  figures.most_allowed = options_.acceptance.largest_deviation;
+  // A flat map fits a scene with depth only here and there: before the map stands every pose is believed.
+  if (view.initialised && !isBelieved(pose, context, options_.acceptance)) return std::nullopt;
+  return std::optional<FramePose>(std::move(pose));
 }
 
 // The motion since the last frame from the images as a whole: first its rotation, then all of it by the tracks'

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory_resource>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "edges/point_accuracy.h"
@@ -10,6 +12,7 @@
 #include "map/map_view.h"
 #include "tracking/edge_lock.h"
 #include "tracking/followed_frame.h"
+#include "tracking/orientation_only.h"
 #include "tracking/patch_refinement.h"
 #include "tracking/point_following.h"
 #include "tracking/pose_acceptance.h"
@@ -26,6 +29,7 @@ struct LocationOptions {
   EdgeLockOptions edge_lock;
   SparseAlignmentOptions alignment;
   AcceptanceOptions acceptance;
+  OrientationOnlyOptions orientation_only;
   int outlier_frames = 4;  // a track whose map point misses the pose so often in a row is dropped
 };
 
@@ -37,18 +41,37 @@ struct LocationPrior {
   RowMotion motion;               // tells how the camera moves while its rows are read
 };
 
+// What a frame's tracks came to in the map, be the pose believed or not.
+struct LocationFigures {
+  int followed = 0;         // tracks found in the frame ...
+  int tracks = 0;           // ... of so many
+  bool has_pose = false;    // the map points among them give one
+  int in_view = 0;          // map points among them
+  int agree = 0;            // of these, with the pose
+  int asked = 0;            // so many had to agree
+  double deviation = 0;     // of the pose, as it is judged (pose_acceptance.h) ...
+  double most_allowed = 0;  // ... which had to be less
+};
+
+// Why no pose was found that can be believed, in words, in place of what is in `reason`.
+void describe(const LocationFigures& figures, std::string& reason);
+
 class FrameLocation {
  public:
   FrameLocation(const Camera& camera, const LocationOptions& options);
 
   // Fills the tracks, the pose and what agrees with it of `frame`, whose images and edges are there; `last` was located
-  // in `view`. False where no pose is found that can be believed. `memory`: what it needs on the way.
+  // in `view`. False where no pose is found that can be believed: `figures` say why. `memory`: what it needs on the
+  // way.
   bool locate(const FollowedFrame& last, const MapView& view, const LocationPrior& prior, FollowedFrame& frame,
-              std::pmr::memory_resource& memory, StageClock& clock) const;
+              LocationFigures& figures, std::pmr::memory_resource& memory, StageClock& clock) const;
 
  private:
   Pose alignImages(const FollowedFrame& last, const AlignmentPoints& points, const Pose& world_T_predicted,
                    const FollowedFrame& frame, std::pmr::memory_resource& memory) const;
+  std::optional<FramePose> poseInMap(const MapView& view, const LocationPrior& prior, const Pose& world_T_predicted,
+                                     const AcceptanceContext& context, FollowedFrame& frame, LocationFigures& figures,
+                                     std::pmr::memory_resource& memory, StageClock& clock) const;
   void countOutliers(const FramePose& pose, bool map_stands, std::vector<Track>& tracks) const;
 
   Camera camera_;

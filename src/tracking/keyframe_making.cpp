@@ -45,6 +45,12 @@ void KeyframeMaking::choosePointsOfFirst(FollowedFrame& frame, const PointAccura
   choosePointsIn(frame, first_of_world_, accuracy);
 }
 
+PointId KeyframeMaking::choosePointsOfSpare(FollowedFrame& frame, const PointAccuracy& accuracy) {
+  const PointId first = next_point_;
+  choosePointsIn(frame, -1, accuracy);
+  return first;
+}
+
 KeyframeDecision KeyframeMaking::judge(const MapView& view, const FollowedFrame& frame) const {
   KeyframeEvidence evidence;
   evidence.rotation_deg =

@@ -23,6 +23,8 @@ class KeyframeMaking {
   void beginWorld() { first_of_world_ = next_keyframe_; }
   // The frame's own points, as those of a world's first keyframe; what was tracked in it is forgotten.
   void choosePointsOfFirst(FollowedFrame& frame, const PointAccuracy& accuracy);
+  // Points beside those that are tracked in a frame that is none of a keyframe's; gives the first one's number.
+  PointId choosePointsOfSpare(FollowedFrame& frame, const PointAccuracy& accuracy);
   KeyframeId firstOfWorld() const { return first_of_world_; }
 
   // P8 to P12, for a frame that is located in `view`.

@@ -6,6 +6,7 @@
 
 #include "geometry/median.h"
 #include "geometry/resectioning.h"
+#include "tracking/pose_observations.h"
 
 namespace edgeslam {
 namespace {
@@ -14,14 +15,6 @@ namespace {
 constexpr double most_of_them = 0.7;
 // ... and another pose is taken if so many times as many agree with it; where hardly more do, it is the same one.
 constexpr double clearly_more = 1.2;
-
-// What is seen of a map point, with the uncertainty that its depth adds along the epipolar direction.
-PoseObservation observationOf(const Camera& camera, const MapView& view, const ViewPoint& point, const Track& track,
-                              const Pose& predicted_T_world) {
-  return observeWithDepth(camera, predicted_T_world * view.keyframes[point.host].world_T_camera,
-                          {point.host_bearing, point.inverse_depth, point.inverse_depth_sigma},
-                          worldPosition(view, point), measurementOf(track));
-}
 
 // Of the mapped tracks; 0 where there are none.
 double medianInverseDepth(const MapView& view, const std::vector<Track>& tracks, const Pose& camera_T_world,
@@ -37,30 +30,6 @@ double medianInverseDepth(const MapView& view, const std::vector<Track>& tracks,
   return values.empty() ? 0 : upperMedian(values);
 }
 
-// Tracks that have no depth yet: with one that is little more than a guess, what they measure is where they are across
-// the epipolar line of their keyframe.
-void addUnmapped(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
-                 const Pose& camera_T_world, const FramePoseOptions& options, std::pmr::memory_resource* memory,
-                 PoseObservations& observations) {
-  const double inverse_depth = medianInverseDepth(view, tracks, camera_T_world, memory);
-  if (inverse_depth <= 0) return;
-  AscendingPoints points(view);
-  for (const Track& track : tracks) {
-    if (!track.keyframe_images || !view.keyframes.contains(track.keyframe) || points.find(track.id)) continue;
-    ViewPoint guessed;
-    guessed.host = track.keyframe;
-    const Eigen::Vector2d pixel = track.keyframe_pixel.cast<double>();
-    guessed.host_bearing =
-        rayOfRow(camera, view.keyframes[track.keyframe].twist, pixel.y(), bearing(camera, pixel)).direction;
-    guessed.inverse_depth = inverse_depth;
-    guessed.inverse_depth_sigma = options.unmapped_depth_sigma * inverse_depth;
-    observations.push_back(observationOf(camera, view, guessed, track, camera_T_world));
-    Measurement& measurement = observations.back().measurement;
-    measurement.sigma_normal *= options.unmapped_weakening;
-    measurement.sigma_tangent *= options.unmapped_weakening;
-  }
-}
-
 }  // namespace
 
 FramePose estimatePose(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
@@ -70,24 +39,18 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
   PoseObservations observations(memory);
   observations.reserve(tracks.size());
   pose.track_of_observation.reserve(tracks.size());
-  AscendingPoints mapped_points(view);
   const Pose predicted_T_world = world_T_predicted.inverse();
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (const ViewPoint* point = mapped_points.find(tracks[i].id)) {
-      observations.push_back(observationOf(camera, view, *point, tracks[i], predicted_T_world));
-      pose.track_of_observation.push_back(static_cast<int>(i));
-    }
-  }
+  addMapped(camera, view, tracks, predicted_T_world, observations, pose.track_of_observation);
   const std::size_t mapped = observations.size();
-  if (view.initialised && options.unmapped_depth_sigma > 0) {
-    addUnmapped(camera, view, tracks, predicted_T_world, options, memory, observations);
+  const double inverse_depth = view.initialised ? medianInverseDepth(view, tracks, predicted_T_world, memory) : 0;
+  if (inverse_depth > 0 && options.unmapped_depth_sigma > 0) {
+    addUnmapped(camera, view, tracks, predicted_T_world,
+                {inverse_depth, options.unmapped_depth_sigma * inverse_depth, options.unmapped_weakening, 0},
+                observations);
   }
   pose.result = adjustPose(camera, world_T_predicted, observations, options, memory, motion);
-  // What is not mapped helps the pose, but says nothing of how much of the map is found again.
   observations.resize(mapped);
-  pose.result.inliers.resize(mapped);
-  pose.result.errors_across.resize(mapped);
-  pose.result.inlier_count = static_cast<int>(std::count(pose.result.inliers.begin(), pose.result.inliers.end(), 1));
+  keepMapped(pose);
   if (pose.result.inlier_count < options.fewest) pose.result.converged = false;
   const auto agree = static_cast<double>(pose.result.inlier_count), visible = static_cast<double>(mapped);
   const bool most_agree = pose.result.converged && agree >= most_of_them * visible;
@@ -113,6 +76,14 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
     pose.by_resectioning = true;
   }
   return pose;
+}
+
+void keepMapped(FramePose& pose) {
+  const std::size_t mapped = pose.track_of_observation.size();
+  PoseResult& result = pose.result;
+  result.inliers.resize(mapped);
+  result.errors_across.resize(mapped);
+  result.inlier_count = static_cast<int>(std::count(result.inliers.begin(), result.inliers.end(), 1));
 }
 
 double largestDeviation(const Matrix6d& covariance, double scene_depth) {

@@ -31,6 +31,9 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
                        std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
                        const RowMotion& motion = {});
 
+// What is not mapped helps a pose, but says nothing of how much of the map is found again: takes it out of the result.
+void keepMapped(FramePose& pose);
+
 // The largest standard deviation of a pose: of its position, as a share of `scene_depth`, or of its rotation [rad].
 // `covariance`: of [translation; rotation].
 double largestDeviation(const Matrix6d& covariance, double scene_depth);

@@ -14,6 +14,7 @@ struct FrameRole {
   const char* reason = "";   // which criterion made it a keyframe
   double noise_factor = 1;   // of what is measured in it
   int world = 0;             // that its pose is in, or the last pose was in
+  std::int64_t start = -1;   // first frame of the start that it helps
 };
 
 // Writes over `description`, with its memory. A frame that only helps a start has no images in it.

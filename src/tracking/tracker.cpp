@@ -69,7 +69,8 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       keyframes_(camera, options.keyframes, points),
       noise_(options.noise),
       scratch_memory_(scratch_size),
-      scratch_(scratch_memory_.data(), scratch_memory_.size()) {
+      scratch_(scratch_memory_.data(), scratch_memory_.size()),
+      spare_(most_tracks_) {
   for (FollowedFrame* frame : {&frame_, &last_, &kept_}) {
     frame->tracks.reserve(most_found_again);
     frame->straight_edges.reserve(most_tracks_);
@@ -105,33 +106,47 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
 
   bool located = locate(work);  // P5, P6, P16
   measureNoise(work.result);
-  if (!mapStands() && (!located || tooFewAreLeft())) {
+  if (!mapStands() && (!located || (tooFewAreLeft() && !goOnFromSpare()))) {
     return startMap("starting anew: too few of the first frame's points are left", work);  // P13
   }
   const bool is_told =
       is_sharp && mapStands() && located && !mapping_busy && selectKeyframe(located, work);  // P8 to P12
   if (!located) {
-    lose("map points not found again", work);
+    lose(work);
     return is_told;
   }
   reuseMapWhenDue(work);
   tell(work);
   remember();
   if (mapStands() || mapping_busy) return is_told;
-  keepEdgesOfStart(last_);
-  describe(camera_, last_, {FrameKind::start, -1, ""}, for_mapping);  // P13, P14
+  helpStart(for_mapping);
   return true;
+}
+
+// P13, P14
+void Tracker::helpStart(TrackedFrame& for_mapping) {
+  FrameKind kind = FrameKind::start;
+  KeyframeId keyframe = -1;
+  if (isToKeepSpare()) {
+    kind = FrameKind::spare;
+    keyframe = keyframes_.firstOfWorld();
+    const PointId first_new = keyframes_.choosePointsOfSpare(last_, preparation_.accuracy());
+    spare_.begin(camera_, last_, keyframe, first_new);
+  }
+  keepEdgesOfStart(last_);
+  describe(camera_, last_, {kind, keyframe, "first", 1, 0, view_.origin_frame}, for_mapping);
 }
 
 // Long after the last frame that was located its points are not looked for any more.
 bool Tracker::locate(Work& work) {
+  figures_ = {};
   if (!last_.isThere()) return false;
   const bool regains = lost_since_ns_ >= 0;
   if (regains && static_cast<double>(work.time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds) return false;
   scratch_.release();
   const LocationPrior prior{motion_.predict(lastCamera(), work.time_ns), regains, preparation_.accuracy(),
                             motion_.whileRowsAreRead(lastCamera(), work.time_ns, mapStands())};
-  return location_.locate(last_, view_, prior, frame_, scratch_, work.clock);
+  return location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
 }
 
 // What is measured from now on, and what was measured already and is looked at again, counts as it says.
@@ -149,10 +164,30 @@ void Tracker::measureNoise(FrameResult& result) {
 }
 
 bool Tracker::tooFewAreLeft() {
-  const auto left = static_cast<double>(frame_.tracks.size());
+  const auto left = static_cast<double>(spare_.countOlder(frame_.tracks));
   const bool is_faded = left < options_.restart_share * static_cast<double>(tracks_at_start_);
   faded_frames_ = is_faded ? faded_frames_ + 1 : 0;
   return faded_frames_ >= options_.restart_frames || left < options_.fewest_tracks;
+}
+
+bool Tracker::isToKeepSpare() const {
+  return !spare_.isThere() &&
+         static_cast<double>(last_.tracks.size()) < options_.spare_share * static_cast<double>(tracks_at_start_);
+}
+
+// False where there is none, or too little of it is left.
+bool Tracker::goOnFromSpare() {
+  if (!spare_.isThere()) return false;
+  const auto at_start = static_cast<double>(spare_.first().observations.size());
+  const auto fewest = std::max<double>(options_.fewest_tracks, options_.restart_share * at_start);
+  if (static_cast<double>(frame_.tracks.size()) < fewest) return false;
+  spare_.adopt(last_);
+  spare_.adopt(frame_);
+  makeFlatView(spare_.first(), view_);
+  tracks_at_start_ = spare_.first().observations.size();
+  faded_frames_ = 0;
+  spare_.forget();
+  return true;
 }
 
 bool Tracker::isToBeginWorld(std::int64_t time_ns) const {
@@ -162,6 +197,7 @@ bool Tracker::isToBeginWorld(std::int64_t time_ns) const {
 
 // What was there is no longer tracked, but is looked for.
 void Tracker::beginWorld() {
+  spare_.forget();
   view_.initialised = false;
   is_lost_ = false;
   lost_since_ns_ = -1;
@@ -171,6 +207,7 @@ void Tracker::beginWorld() {
 
 bool Tracker::startMap(const char* reason, Work& work) {
   last_.forget();
+  spare_.forget();
   if (work.mapping_busy) {
     work.result.reason = "mapping is behind";
     return false;
@@ -259,6 +296,10 @@ void Tracker::tell(Work& work) {
   map_covariance_ = mapUncertaintyAt(view_, frame_.tracks, frame_.world_T_camera, &scratch_);
   result.state = TrackingState::tracking;
   result.has_pose = true;
+  if (frame_.position_is_held) {
+    result.reason.assign("orientation only, the position is held: ");
+    result.reason.append(std::to_string(frame_.inlier_count)).append(" map points in view agree");
+  }
   result.world = last_world_ = view_.world;
   result.world_covariance = worldCovariance(camera_, withSharedNoise(frame_.covariance), map_covariance_,
                                             frame_.outlier_share, options_.uncertainty);
@@ -301,8 +342,9 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult
                                             last_.outlier_share, options_.uncertainty);
 }
 
-void Tracker::lose(const char* reason, Work& work) {
-  predict(work.time_ns, reason, work.result);
+void Tracker::lose(Work& work) {
+  predict(work.time_ns, "", work.result);
+  describe(figures_, work.result.reason);
   work.result.state = TrackingState::lost;
   work.result.has_pose = false;
   work.result.world = -1;
@@ -339,6 +381,7 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
                      const std::vector<FoundAgain>& points) {
   std::swap(last_, kept_);
   kept_.forget();
+  spare_.forget();
   if (!points.empty()) last_.tracks.clear();
   for (const FoundAgain& found : points) last_.tracks.push_back(trackOf(found));
   std::sort(last_.tracks.begin(), last_.tracks.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
@@ -376,11 +419,13 @@ void Tracker::adopt(MapView& view) {
   const Pose moved_pose = moved(*new_S_old, last_.world_T_camera);
   if (is_first) {
     ++worlds_;
+    spare_.forget();
     keyframes_.seen(view_.latest_keyframe);
     keyframes_.askForOne(last_);
   }
   scratch_.release();
   last_.twist = moved(*new_S_old, last_.twist);
+  last_.scene_depth *= new_S_old->scale;
   RowMotion motion;
   motion.before = last_.twist;
   const FramePose again =

@@ -21,6 +21,7 @@
 #include "tracking/map_reuse.h"
 #include "tracking/measured_noise.h"
 #include "tracking/motion_model.h"
+#include "tracking/spare_start.h"
 #include "tracking/stage_times.h"
 #include "tracking/tracked_frame.h"
 #include "tracking/world_uncertainty.h"
@@ -36,6 +37,7 @@ struct TrackerOptions {
   WorldUncertaintyOptions uncertainty;
   MeasuredNoiseOptions noise;
   int fewest_tracks = 30;       // fewer are not enough to start a map with
+  double spare_share = 0.45;    // of the first frame's tracks: fewer left, and another start is kept beside it
   double restart_share = 0.3;   // of the first frame's tracks: fewer left, and the initialisation starts anew ...
   int restart_frames = 4;       // ... after so many such frames: mapping may be about to answer [frames]
   double regain_seconds = 0.7;  // so long after a loss the last tracked frame's points are still looked for
@@ -111,6 +113,9 @@ class Tracker {
   void beginWorld();
   bool startMap(const char* reason, Work& work);
   bool tooFewAreLeft();
+  bool goOnFromSpare();
+  bool isToKeepSpare() const;
+  void helpStart(TrackedFrame& for_mapping);
   bool selectKeyframe(bool& located, Work& work);
   void keepEdgesOfStart(FollowedFrame& frame);
   void becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work);
@@ -120,7 +125,7 @@ class Tracker {
   Matrix6d withSharedNoise(const Matrix6d& covariance) const;
   void remember();
   void predict(std::int64_t time_ns, std::string_view reason, FrameResult& result) const;
-  void lose(const char* reason, Work& work);
+  void lose(Work& work);
   void beLostSince(std::int64_t time_ns);
 
   Camera camera_;
@@ -137,11 +142,13 @@ class Tracker {
   MapView view_;
   FollowedFrame frame_;  // the current one
   FollowedFrame last_;   // the last frame that was located
-  FollowedFrame kept_;   // a lost frame that others look for
+  LocationFigures figures_;
+  FollowedFrame kept_;  // a lost frame that others look for
   bool frame_is_lost_ = false;
   bool is_lost_ = false;                        // the last frame was, and not merely blurred
   std::int64_t lost_since_ns_ = -1;             // or blurred since; -1: neither
   Matrix6d map_covariance_ = Matrix6d::Zero();  // where the last pose was measured
+  SpareStart spare_;                            // while the map does not stand
   std::size_t tracks_at_start_ = 0;             // of the first frame of a map that does not stand yet
   int faded_frames_ = 0;                        // in a row, in which too few of these are left
   int worlds_ = 0;                              // that were tracked in

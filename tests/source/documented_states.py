@@ -15,6 +15,7 @@ import sys
 # literals that are no reasons.
 SOURCES = {
     "src/tracking/tracker.cpp": ["first", "recovery"],  # of keyframes
+    "src/tracking/frame_location.cpp": ["0."],
     "src/pipeline/tracking_worker.cpp": [],
     "src/pipeline/mapping_worker.cpp": [  # events
         "map ", " begins beside those before: ", "recovered from three keyframes, ", " points", "relocalised at keyframe "],

@@ -126,6 +126,30 @@ TEST(DimCorridor, IsFollowedAtItsScale) {
   EXPECT_LE(result.count("lost", 0, last) + result.count("predicted", 0, last), 3);
 }
 
+// A turn on the spot by 137 degrees and back, in 3.3 s: hardly anything on the way has a depth. Orientation goes on,
+// the map grows on in the same world, and what was mapped before is known again afterwards.
+TEST(Pan, IsFollowedByItsOrientation) {
+  const TemporaryFolder folder;
+  const std::string sequence = folderOf("parlour_pan");
+  constexpr int pan = 150, after = 250;
+  const std::string off = folder.write("off.yaml", "orientation_only: {enabled: false}\n");
+  const ReplayedRun result = replayed(sequence, folder.path("result"));
+  const ReplayedRun without = replayed(sequence, folder.path("without"), {"--config", off});
+  ASSERT_EQ(result.outcome.exit_code, 0) << result.outcome.messages;
+  ASSERT_EQ(without.outcome.exit_code, 0) << without.outcome.messages;
+  EXPECT_GE(result.countGood(pan, after - 1), 80);
+  EXPECT_LE(without.countGood(pan, after - 1), 60);
+  const int last = static_cast<int>(result.states.size()) - 1;
+  EXPECT_EQ(result.countGood(after, last), last - after + 1);
+  for (const int world : result.worlds) EXPECT_LE(world, 0);
+
+  const Trajectory truth = readTrajectory(sequence + "/groundtruth.txt");
+  const Trajectory final = readTrajectory(result.folder + "/trajectory.txt");
+  EXPECT_LT(largestError(final, truth), 0.3) << "a tenth of the distance";
+  const Trajectory since(final.end() - (last - after), final.end());
+  EXPECT_LT(largestError(since, truth), 0.03);
+}
+
 // Two places filmed one after the other, as if they were one: no loop joins them, and in the second no frame is taken
 // for one of the first, but a world is begun.
 class TwoPlaces : public ::testing::TestWithParam<std::pair<std::string, std::string>> {};

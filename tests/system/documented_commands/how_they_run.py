@@ -51,9 +51,10 @@ INSTEAD = {
                    "edgeslam report all --output all.html"]),
     "edgeslam simulate SCENE --output DIR [--frames N] [--seed N] [--fps F] [--width PX] [--height PX] [--fisheye] "
     "[--exposure MS] [--readout MS] [--noise GREY] [--speed FACTOR] [--cover|--shake|--still|--turn FIRST:COUNT] "
+    "[--turn-angle DEG] "
     "[--force]": Instead(
         SYNOPSIS, [f"edgeslam simulate {scene} --output made --seed 2 --fps 20 {SMALL} --fisheye --exposure 2 "
-                   "--readout 24 --noise 3 --speed 2 --cover 0:1 --shake 1:1 --still 2:1 --turn 2:1 --force"
+                   "--readout 24 --noise 3 --speed 2 --cover 0:1 --shake 1:1 --still 2:1 --turn 2:1 --turn-angle 60 --force"
                    for scene in ("panels", "panels_textured", "room", "corridor", "corridor_tiled")]),
     "edgeslam calibrate board --columns N --rows N --square LENGTH --output PDF "
     "[--type chessboard|charuco|aprilgrid] [--paper A4]": Instead(

@@ -332,6 +332,30 @@ TEST(PoseAdjustment, ValuesThatAreNoNumbersAreOutliers) {
   EXPECT_FALSE(adjustPose(trial.camera, start, trial.observations, {}).converged);
 }
 
+// A weak one changes nothing, a strong one decides; either is in the covariance.
+TEST(PoseAdjustment, APriorOfThePositionCounts) {
+  Random random(14);
+  const Trial trial = makeTrial(random, {});
+  const PoseResult without = adjustPose(trial.camera, trial.truth, trial.observations, {});
+  ASSERT_TRUE(without.converged);
+  const auto with = [&](const Eigen::Vector3d& off, double sigma) {
+    const PositionPrior prior{trial.truth.translation + off, Eigen::Matrix3d::Identity() / (sigma * sigma)};
+    PoseResult result =
+        adjustPose(trial.camera, trial.truth, trial.observations, {}, std::pmr::get_default_resource(), {}, prior);
+    EXPECT_TRUE(result.converged);
+    return result;
+  };
+  const Eigen::Vector3d off(0.02, -0.03, 0.01);
+  const PoseResult weak = with(off, 1e3), strong = with(off, 1e-7);
+  EXPECT_LT(distance(weak.world_T_camera, without.world_T_camera), 1e-6);
+  EXPECT_LT((strong.world_T_camera.translation - trial.truth.translation - off).norm(), 1e-5);
+  const Matrix6d covariance = with(Eigen::Vector3d::Zero(), 1e-4).covariance;
+  EXPECT_LT(covariance.diagonal().head<3>().maxCoeff(), 1e-8);
+  for (const double sigma : {1e-3, 1e-2}) {
+    EXPECT_LT(with(Eigen::Vector3d::Zero(), sigma).covariance.trace(), without.covariance.trace()) << sigma;
+  }
+}
+
 TEST(PoseAdjustment, OnePointSeenManyTimesIsNoPose) {
   Random random(12);
   TrialOptions options;

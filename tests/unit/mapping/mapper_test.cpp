@@ -89,6 +89,75 @@ TEST(Mapper, AFrameThatWasOnItsWayWhenTheMapCameToStandIsNoKeyframe) {
   EXPECT_EQ(mapper.earlyPoses().size(), early_poses + 1) << "but it has a pose";
 }
 
+Pose slowly(int i) { return {rotationExp({0.002 * i, -0.002 * i, 0.002 * i}), {0.008 * i, 0.002 * i, 0.002 * i}}; }
+
+// Frame 3 is kept as another start's first, with twice as many points. From frame 6 on the first one's are gone, and
+// tracking goes on from frame 3.
+Mapper startedFromSpare(int frames) {
+  MapperOptions options;
+  options.initialisation.frames_between = 3;
+  options.initialisation.five_point_corners = 1000;
+  Mapper mapper(camera, options);
+  const EdgeScene scene = framesOnAWall(21);
+  for (int i = 0; i < frames; ++i) {
+    const Pose against = i < 6 ? Pose() : slowly(3);
+    TrackedFrame frame = seen(scene, slowly(i), i, i == 0 || i == 3 ? 0 : -1);
+    frame.world_T_camera = against.inverse() * frame.world_T_camera;
+    frame.world_T_camera.translation /= 3;
+    if (i > 0) frame.kind = i == 3 ? FrameKind::spare : FrameKind::start;
+    frame.start = i < 6 ? 0 : 3;
+    std::vector<PointObservation>& seen = frame.observations;
+    const auto isGone = [i](const PointObservation& o) {
+      const bool is_of_first = o.point % 2 == 0;
+      return i < 3 ? !is_of_first : i >= 6 && is_of_first;
+    };
+    seen.erase(std::remove_if(seen.begin(), seen.end(), isGone), seen.end());
+    mapper.add(frame);
+  }
+  return mapper;
+}
+
+TEST(Mapper, AStartGoesOnFromItsSpareFrame) {
+  const Mapper waiting = startedFromSpare(6);
+  EXPECT_FALSE(waiting.initialised());
+  EXPECT_EQ(waiting.view().origin_frame, 0);
+  EXPECT_EQ(startedFromSpare(7).view().origin_frame, 3);
+  const Mapper mapper = startedFromSpare(60);
+  ASSERT_TRUE(mapper.initialised());
+  EXPECT_EQ(mapProblem(camera, mapper.map()), "");
+  EXPECT_EQ(mapper.map().keyframes.front().frame_index, 3);
+  EXPECT_EQ(mapper.map().keyframes.front().id, 0);
+  EXPECT_EQ(mapper.earlyPoses().front().frame_index, 3);
+  // Up to a scale, the path is that of the camera.
+  const Keyframe& last = mapper.map().keyframes.back();
+  const Pose truth = slowly(3).inverse() * slowly(static_cast<int>(last.frame_index));
+  EXPECT_LT(rotationAngle(last.world_T_camera.rotation, truth.rotation), 0.01);
+  EXPECT_GT(last.world_T_camera.translation.normalized().dot(truth.translation.normalized()), 0.999);
+}
+
+// Tracking gave the start up before it heard that its map stands.
+TEST(Mapper, AStartThatStoodTooLateGivesWayToItsSpareFrame) {
+  Mapper mapper(camera, MapperOptions());
+  const EdgeScene scene = framesOnAWall(21);
+  int i = 0;
+  for (; i < 90 && !mapper.initialised(); ++i) {
+    TrackedFrame frame = seen(scene, sideways(i), i, i == 0 || i == 2 ? 0 : -1);
+    frame.world_T_camera.translation /= 3;
+    frame.kind = i == 0 ? FrameKind::first : i == 2 ? FrameKind::spare : FrameKind::start;
+    frame.start = 0;
+    mapper.add(frame);
+  }
+  ASSERT_TRUE(mapper.initialised());
+  TrackedFrame frame = seen(scene, sideways(i), i, -1);
+  frame.start = 2;
+  mapper.add(frame);
+  EXPECT_EQ(mapper.view().origin_frame, 2);
+  if (mapper.initialised()) {
+    EXPECT_EQ(mapper.map().keyframes.front().frame_index, 2);
+  }
+  EXPECT_EQ(mapper.startsGivenUp(), 1U);
+}
+
 // Feeds frames of another place until a map of it stands; its first keyframe gets this number.
 void startElsewhere(Mapper& mapper, std::int64_t first_frame, KeyframeId first_keyframe) {
   const EdgeScene scene = framesOnAWall(25);

@@ -96,6 +96,38 @@ TEST(Tracker, TheFirstFrameStartsAMap) {
   EXPECT_FALSE(second.for_mapping.images);
 }
 
+// Past the plane so fast that its first points leave the image: a younger frame is kept beside the first one, and
+// tracking goes on from it.
+TEST(Tracker, AStartWhosePointsFadeGoesOnFromASpareFrame) {
+  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
+  std::vector<Outcome> outcomes;
+  std::int64_t spare = -1;
+  for (int i = 0; i < 70; ++i) {
+    const cv::Mat image = wall().render(camera, {Eigen::Quaterniond::Identity(), {0.03 * i, 0.004 * i, 0}});
+    outcomes.push_back(track(tracker, i, i * interval_ns, image));
+    const Outcome& now = outcomes.back();
+    ASSERT_EQ(now.state, TrackingState::initialising) << i;
+    ASSERT_TRUE(now.tells_mapping) << i;
+    if (i > 0) {
+      EXPECT_NE(now.for_mapping.kind, FrameKind::first) << i << ": " << now.reason;
+    }
+    if (now.for_mapping.kind == FrameKind::spare && spare < 0) spare = i;
+  }
+  ASSERT_GT(spare, 0);
+  const TrackedFrame& kept = outcomes[static_cast<std::size_t>(spare)].for_mapping;
+  EXPECT_TRUE(kept.images);
+  EXPECT_EQ(kept.keyframe, 0);
+  EXPECT_EQ(kept.start, 0);
+  EXPECT_GT(kept.observations.size(),
+            1.2 * outcomes[static_cast<std::size_t>(spare) - 1].for_mapping.observations.size());
+  const auto against = std::find_if(outcomes.begin(), outcomes.end(),
+                                    [&](const Outcome& outcome) { return outcome.for_mapping.start == spare; });
+  ASSERT_NE(against, outcomes.end());
+  const TrackedFrame& frame = against->for_mapping;  // its pose is against the spare frame
+  const double moved = 0.03 * static_cast<double>(frame.frame_index - spare) / wall().distance;
+  EXPECT_NEAR(frame.world_T_camera.translation.x(), moved, 0.2 * moved);
+}
+
 TEST(Tracker, WhileMappingIsBusyItIsToldNothingAndTrackingGoesOn) {
   Tracked run(3);
   for (int i = 4; i < 40; ++i) {
@@ -265,10 +297,12 @@ TEST(Tracker, AnotherPlaceIsLostAndGivesNoKeyframeOfIt) {
   EXPECT_FALSE(run.tracker.hasLostFrame());
 }
 
-// Points in a small part of the image fix a pose less well than was asked for.
+// Points in a small part of the image fix a pose less well than was asked for. What else is tracked tells how the
+// camera turned.
 TEST(Tracker, AnUncertainPoseIsNotBelieved) {
-  const auto state = [](double largest_deviation) {
+  const auto result = [](double largest_deviation, bool orientation_only) {
     TrackerOptions options;
+    options.location.orientation_only.enabled = orientation_only;
     options.location.acceptance.least_points_share = 0;
     options.location.acceptance.largest_deviation = largest_deviation;
     Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), options);
@@ -279,10 +313,18 @@ TEST(Tracker, AnUncertainPoseIsNotBelieved) {
     view.points.erase(std::remove_if(view.points.begin(), view.points.end(), is_far_off), view.points.end());
     EXPECT_GT(view.points.size(), 6U);
     adopt(tracker, view);
-    return trackFrame(tracker, 1).state;
+    return trackFrame(tracker, 1);
   };
-  EXPECT_EQ(state(std::numeric_limits<double>::infinity()), TrackingState::tracking);
-  EXPECT_EQ(state(1e-3), TrackingState::lost);
+  const Outcome measured = result(std::numeric_limits<double>::infinity(), true);
+  EXPECT_EQ(measured.state, TrackingState::tracking);
+  EXPECT_EQ(measured.reason, "");
+  const Outcome lost = result(1e-3, false);
+  EXPECT_EQ(lost.state, TrackingState::lost);
+  EXPECT_NE(lost.reason.find("the pose is uncertain by 0.0"), std::string::npos) << lost.reason;
+  const Outcome held = result(1e-3, true);
+  EXPECT_EQ(held.state, TrackingState::tracking);
+  EXPECT_EQ(held.reason.find("orientation only"), 0U) << held.reason;
+  EXPECT_LT(angle(held.world_T_camera, path(1)), 3e-3);
 }
 
 // The map points as they are measured in the frame at `pose`.
