@@ -78,7 +78,8 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   frame.twist = pose->result.twist;
   frame.covariance = pose->result.covariance;
   frame.inlier_count = pose->result.inlier_count;
-  const auto in_view = static_cast<double>(pose->track_of_observation.size());
+  // Of the few map points that a held position leaves in view, the share says nothing.
+  const auto in_view = frame.position_is_held ? 0 : static_cast<double>(pose->track_of_observation.size());
   frame.outlier_share = in_view > 0 ? 1 - frame.inlier_count / in_view : 0;
   countOutliers(*pose, view.initialised, frame.tracks);
   if (!frame.position_is_held) {
