@@ -44,7 +44,7 @@ struct PosedFrame {
   std::int64_t index = 0;    // of the frame, from 0
   std::int64_t time_ns = 0;  // as it was given with the frame
   SlamState state = SlamState::initialising;
-  std::string reason;  // why it is not `tracking`; empty otherwise
+  std::string reason;  // why it is not plainly `tracking`; empty otherwise
   bool has_pose = false;
   int world = -1;  // that the pose is in; -1: there is none
   CameraPose pose;

@@ -14,7 +14,7 @@ bool hasUsablePose(const FrameResult& result) {
 int worldOf(const FrameResult& result) { return hasUsablePose(result) ? std::max(0, result.world) : -1; }
 
 std::optional<MeasuredPose> measuredPose(const FrameResult& result) {
-  if (!isGoodPose(result.state) || !hasUsablePose(result)) return std::nullopt;
+  if (!isGoodPose(result.state) || result.position_is_held || !hasUsablePose(result)) return std::nullopt;
   MeasuredPose measured;
   measured.time_ns = result.time_ns;
   measured.world = worldOf(result);

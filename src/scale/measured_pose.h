@@ -23,7 +23,7 @@ bool hasUsablePose(const FrameResult& result);
 // That the pose is in, from 0; -1 where there is no usable pose.
 int worldOf(const FrameResult& result);
 
-// None where the pose was not measured, or cannot be used.
+// None where the pose was not measured, or its position was held, or it cannot be used.
 std::optional<MeasuredPose> measuredPose(const FrameResult& result);
 
 // before_T_now [map units], of two poses in one world: through the keyframe that both hang on, where there is one.

@@ -29,6 +29,7 @@ void clear(FrameResult& result) {
   result.state = TrackingState::initialising;
   result.reason.clear();
   result.has_pose = false;
+  result.position_is_held = false;
   result.world = -1;
   result.world_T_camera = result.reference_T_camera = Pose();
   result.covariance.setZero();

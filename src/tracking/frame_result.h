@@ -30,10 +30,11 @@ struct FrameResult {
   std::int64_t index = 0;  // in the source
   std::int64_t time_ns = 0;
   TrackingState state = TrackingState::initialising;
-  std::string reason;  // why it is not `tracking`, or empty
+  std::string reason;  // why it is not plainly `tracking`, or empty
   bool has_pose = false;
-  int world = -1;       // that the pose is in: counted from 0, one more where a new map was begun; -1: none
-  Pose world_T_camera;  // map units; measured, or from motion alone where the state says so
+  bool position_is_held = false;  // only the rotation is measured (orientation_only.h)
+  int world = -1;                 // that the pose is in: counted from 0, one more where a new map was begun; -1: none
+  Pose world_T_camera;            // map units; measured, or from motion alone where the state says so
   // Of the right-hand update [translation; rotation]: of the pose in the map as it is, and of the pose in the world, in
   // which the map itself may have drifted since its first keyframe.
   Matrix6d covariance = Matrix6d::Zero(), world_covariance = Matrix6d::Zero();

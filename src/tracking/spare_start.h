@@ -15,7 +15,7 @@ class SpareStart {
   // `frame`: its tracks from `first_new_point` on were chosen in it. Its pose is against the start that it stands
   // beside.
   void begin(const Camera& camera, const FollowedFrame& frame, KeyframeId keyframe, PointId first_new_point);
-  void forget() { is_there_ = false; }
+  void forget();
   bool isThere() const { return is_there_; }
 
   // The frame as mapping gets to see it.

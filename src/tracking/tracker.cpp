@@ -296,6 +296,7 @@ void Tracker::tell(Work& work) {
   map_covariance_ = mapUncertaintyAt(view_, frame_.tracks, frame_.world_T_camera, &scratch_);
   result.state = TrackingState::tracking;
   result.has_pose = true;
+  result.position_is_held = frame_.position_is_held;
   if (frame_.position_is_held) {
     result.reason.assign("orientation only, the position is held: ");
     result.reason.append(std::to_string(frame_.inlier_count)).append(" map points in view agree");

@@ -140,6 +140,13 @@ TEST(BodyMotion, TooLongAgoOrBackwardsIsNone) {
   EXPECT_FALSE(bodyMotion(before, *measuredPose(measuredFrame(26, Pose())), {}));
 }
 
+TEST(MeasuredPose, IsNoneWhereThePositionIsHeld) {
+  FrameResult frame = measuredFrame(10, Pose());
+  EXPECT_TRUE(measuredPose(frame));
+  frame.position_is_held = true;
+  EXPECT_FALSE(measuredPose(frame));
+}
+
 TEST(BodyMotion, CovarianceIsThatOfBothPosesErrors) {
   Random random(8);
   const RobotSetup robot = metricRobot(randomPose(random), 0.7);
