@@ -68,7 +68,8 @@ def has_map(opened):
 
 
 def state(opened):
-    return opened.run("return document.getElementById('state').dataset.state;")
+    """None while the page is on its way, as after a token was given."""
+    return opened.run("const found = document.getElementById('state'); return found && found.dataset.state;")
 
 
 def whole_map(opened):
