@@ -6,6 +6,7 @@
 
 #include "map/worlds.h"
 #include "mapping/line_bundle.h"
+#include "mapping/motion_along_lines.h"
 
 namespace edgeslam {
 namespace {
@@ -170,6 +171,8 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
       observed.emplace_back(id, keyframe);
     }
   }
+  const auto indexOf = [&](KeyframeId keyframe) { return camera_of[static_cast<std::size_t>(keyframe)]; };
+  addMotionAlongLines(map, lines.lines, indexOf, problem);
   const BundleResult result = adjustBundle(camera, problem, options.bundle, interrupted);
   if (!result.usable) return false;
 

@@ -1,0 +1,191 @@
+// Lines in adjustments of keyframes: they stand for the points on them, bring keyframes to where they are, and are
+// dissolved where their views contradict.
+#include "mapping/line_bundle.h"
+
+#include <gtest/gtest.h>
+
+#include "line_scene.h"
+#include "mapping/local_adjustment.h"
+
+namespace edgeslam::test {
+namespace {
+
+Camera camera() { return testCamera(CameraModel::pinhole_radial_tangential); }
+
+// Borders of panels that stand zig-zag, with a floor and a ceiling.
+std::vector<SpaceEdge> zigzag() {
+  std::vector<SpaceEdge> edges;
+  for (int i = 0; i < 5; ++i) {
+    const double x = -1.2 + 0.6 * i, depth = 3 + 0.5 * (i % 2), next_depth = 3.5 - 0.5 * (i % 2);
+    edges.push_back({{x, -0.7, depth}, {x, 0.7, depth}});
+    if (i == 4) break;
+    edges.push_back({{x + 0.1, 0.8, depth}, {x + 0.5, 0.8, next_depth}});
+    edges.push_back({{x + 0.5, -0.8, next_depth}, {x + 0.1, -0.8, depth}});
+  }
+  return edges;
+}
+
+const std::vector<SpaceEdge> edges = zigzag();
+
+// Of keyframes that go sideways along the panels, with their lines placed, and every track a point on its line.
+Map mapOfPanels(const EdgeSight& sight, Random& random, int keyframes = 5) {
+  Map map;
+  for (KeyframeId id = 0; id < keyframes; ++id) {
+    const Pose pose = at(0.08 * id, 0.02 * (id % 3), 0.03 * (id % 2), {0.01 * id, -0.02 * id, 0});
+    map.keyframes.push_back(keyframeThatSees(camera(), edges, id, pose, sight, random));
+  }
+  addPlacedLines(edges, map);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    for (int k = 0; k < tracks_on_edge; ++k) {
+      MapPoint point;
+      point.id = trackOf(i, k);
+      bool hosted = false;
+      for (const Keyframe& keyframe : map.keyframes) {
+        const PointObservation* seen = findObservation(keyframe, point.id);
+        if (!seen) continue;
+        if (hosted) {
+          point.seen_in.push_back(keyframe.id);
+          continue;
+        }
+        hosted = true;
+        const double share = (k + 1.0) / (tracks_on_edge + 1);
+        const Eigen::Vector3d position = edges[i].from + share * (edges[i].to - edges[i].from);
+        point.host = keyframe.id;
+        point.host_bearing = seen->bearing;
+        point.inverse_depth = 1 / (keyframe.world_T_camera.inverse() * position).norm();
+        point.inverse_depth_sigma = 0.1 * point.inverse_depth;
+      }
+      if (!point.seen_in.empty()) map.points.emplace(point.id, point);
+    }
+  }
+  return map;
+}
+
+double offItsLine(const Map& map, PointId id) {
+  const SpaceLine line = lineThrough(edges[static_cast<std::size_t>(id / 100)]);
+  const Eigen::Vector3d position = worldPosition(map, map.points.at(id));
+  return (closestPoint(line, position) - position).norm();
+}
+
+TEST(LineBundle, PointsOnLinesAreThoseThatMostKeyframesSeeThere) {
+  Random random(1);
+  Map map = mapOfPanels({}, random);
+  std::vector<KeyframeId> all;
+  for (const Keyframe& keyframe : map.keyframes) all.push_back(keyframe.id);
+  const std::map<PointId, LineId> on_lines = pointsOnLines(map, all);
+  EXPECT_EQ(on_lines.size(), map.points.size());
+  for (const auto& [point, line] : on_lines) EXPECT_EQ(line, point / 100);
+
+  map.points.at(trackOf(0, 0)).corner = true;
+  for (const KeyframeId keyframe : {1, 2, 3}) {  // three of five see it elsewhere
+    for (PointObservation& seen : map.keyframes[keyframe].observations) {
+      if (seen.point == trackOf(0, 1)) seen.straight_edge = 2;
+    }
+  }
+  map.lines.at(3).is_placed = false;
+  const std::map<PointId, LineId> fewer = pointsOnLines(map, all);
+  EXPECT_EQ(fewer.count(trackOf(0, 0)), 0U);
+  EXPECT_EQ(fewer.at(trackOf(0, 1)), 2);
+  EXPECT_EQ(fewer.count(trackOf(3, 0)), 0U);
+  EXPECT_EQ(fewer.size(), on_lines.size() - 1 - tracks_on_edge);
+}
+
+// A keyframe that sees a line takes part though none of the given ones is near it.
+TEST(LineBundle, AllKeyframesThatSeeALineTakePart) {
+  Random random(1);
+  const Map map = mapOfPanels({}, random);
+  BundleProblem problem;
+  std::vector<KeyframeId> cameras;
+  const auto cameraOf = [&](KeyframeId keyframe) {
+    const auto found = std::find(cameras.begin(), cameras.end(), keyframe);
+    if (found == cameras.end()) cameras.push_back(keyframe);
+    return static_cast<int>(std::find(cameras.begin(), cameras.end(), keyframe) - cameras.begin());
+  };
+  const LinesInBundle added = addLines({4}, map, cameraOf, problem);
+  EXPECT_EQ(added.lines.size(), edges.size());
+  EXPECT_EQ(added.line_of_point.size(), map.points.size());
+  EXPECT_EQ(cameras.size(), 5U);
+  std::size_t views = 0;
+  for (const auto& [id, line] : map.lines) views += line.seen_in.size();
+  EXPECT_EQ(problem.line_observations.size(), 2 * views);
+}
+
+// The bare scene: points whose depths are wrong, and poses that are off, come right by the lines alone.
+TEST(LineBundle, BringsPosesAndPointsToTheirPlaces) {
+  Random random(2);
+  Map map = mapOfPanels({}, random);
+  const Map truth = map;
+  for (Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id > 0) keyframe.world_T_camera = perturbed(random, keyframe.world_T_camera, 0.01, 0.005);
+  }
+  for (auto& [id, point] : map.points) point.inverse_depth *= uniform(random, 0.9, 1.1);
+  LocalAdjustmentOptions options;
+  options.bundle.iterations = 30;
+  ASSERT_TRUE(adjustKeyframes(camera(), options, {0, 1, 2, 3, 4}, {}, map));
+  EXPECT_EQ(map.lines.size(), edges.size());
+  // The gauge of scale keeps the distance of the farthest keyframe as it was put.
+  const auto centre = [](const Map& of, KeyframeId id) { return of.keyframes[id].world_T_camera.translation; };
+  const double scale = centre(map, 4).norm() / centre(truth, 4).norm();
+  for (KeyframeId id = 1; id < 5; ++id) {
+    EXPECT_LT((centre(map, id) - scale * centre(truth, id)).norm(), 2e-4) << id;
+    EXPECT_LT(map.keyframes[id].world_T_camera.rotation.angularDistance(truth.keyframes[id].world_T_camera.rotation),
+              1e-4);
+  }
+  for (const auto& [id, point] : map.points) {
+    const Eigen::Vector3d there = scale * worldPosition(truth, truth.points.at(id));
+    EXPECT_LT((worldPosition(map, point) - there).norm(), 0.01) << id;
+    EXPECT_LT(point.inverse_depth_sigma, 0.05 * point.inverse_depth);
+  }
+}
+
+TEST(LineBundle, PutsPointsOnTheirLines) {
+  Random random(3);
+  Map map = mapOfPanels({}, random);
+  for (auto& [id, point] : map.points) {
+    point.inverse_depth *= 1.1;
+    ASSERT_GT(offItsLine(map, id), 0.01);
+  }
+  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4}, {0, 1}, map));
+  for (const auto& [id, point] : map.points) EXPECT_LT(offItsLine(map, id), 1e-3) << id;
+}
+
+TEST(LineBundle, DissolvesALineThatItsViewsContradict) {
+  Random random(4);
+  Map map = mapOfPanels({}, random);
+  const std::size_t points = map.points.size();
+  for (Keyframe& keyframe : map.keyframes) {
+    for (SeenEdge& edge : keyframe.straight_edges) {
+      if (edge.line != 6) continue;
+      const double off = keyframe.id % 2 == 0 ? 3 : -3;
+      edge.from = endAt(camera(), edge.from.pixel + Eigen::Vector2d(off, off));
+      edge.to = endAt(camera(), edge.to.pixel + Eigen::Vector2d(off, off));
+    }
+  }
+  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4}, {0, 1}, map));
+  EXPECT_EQ(map.lines.count(6), 0U);
+  EXPECT_EQ(map.lines.size(), edges.size() - 1);
+  EXPECT_EQ(map.points.size(), points);  // which are points again
+  for (const Keyframe& keyframe : map.keyframes) {
+    for (const SeenEdge& edge : keyframe.straight_edges) EXPECT_NE(edge.line, 6);
+  }
+}
+
+TEST(LineBundle, SameBytesTwice) {
+  Random random(5);
+  EdgeSight sight;
+  sight.noise = 1;
+  const Map map = mapOfPanels(sight, random);
+  Map first = map, second = map;
+  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4}, {0, 1}, first));
+  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4}, {0, 1}, second));
+  for (const auto& [id, line] : first.lines) {
+    EXPECT_EQ(line.in_host.point, second.lines.at(id).in_host.point);
+    EXPECT_EQ(line.in_host.direction, second.lines.at(id).in_host.direction);
+  }
+  for (const Keyframe& keyframe : first.keyframes) {
+    EXPECT_EQ(keyframe.world_T_camera.translation, second.keyframes[keyframe.id].world_T_camera.translation);
+  }
+}
+
+}  // namespace
+}  // namespace edgeslam::test
