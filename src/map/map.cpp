@@ -14,6 +14,12 @@ void setInWorld(const SpaceLine& in_world, const Map& map, MapLine& line) {
   line.in_host = {host_T_world * in_world.point, host_T_world.rotation * in_world.direction};
 }
 
+void scaleLine(double factor, MapLine& line) {
+  line.in_host.point *= factor;
+  line.begin *= factor;
+  line.end *= factor;
+}
+
 void dissolveLine(LineId id, Map& map) {
   map.lines.erase(id);
   for (Keyframe& keyframe : map.keyframes) {

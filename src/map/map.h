@@ -38,6 +38,9 @@ inline Eigen::Vector3d worldPosition(const Map& map, const MapPoint& point) {
 SpaceLine inWorld(const Map& map, const MapLine& line);
 void setInWorld(const SpaceLine& in_world, const Map& map, MapLine& line);
 
+// Makes all lengths in a line's host frame `factor` times as long.
+void scaleLine(double factor, MapLine& line);
+
 // Takes a line out of the map, and what keyframes know of it; its points stay.
 void dissolveLine(LineId line, Map& map);
 

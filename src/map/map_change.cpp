@@ -53,8 +53,9 @@ void compareLines(const Map& before, const Map& after, MapChange& change) {
     if (found == after.lines.end()) {
       change.dissolved_lines.push_back(id);
     } else if (found->second.is_placed) {
-      const double before_scale = line.in_host.point.norm(), scale = found->second.in_host.point.norm() / before_scale;
-      change.lines[id] = {found->second.host, found->second.in_host, line.is_placed && before_scale > 0 ? scale : 1};
+      const MapLine& now = found->second;
+      const double before_scale = line.in_host.point.norm(), scale = now.in_host.point.norm() / before_scale;
+      change.lines[id] = {now.host, now.in_host, now.begin, now.end, line.is_placed && before_scale > 0 ? scale : 1};
     }
   }
 }
@@ -119,10 +120,12 @@ void applyChange(const MapChange& change, Map& map) {
     const auto place = change.lines.find(id);
     if (place != change.lines.end() && place->second.host == line.host) {
       line.in_host = place->second.in_host;
+      line.begin = place->second.begin;
+      line.end = place->second.end;
     } else if (place != change.lines.end()) {
-      line.in_host.point *= place->second.scale;
+      scaleLine(place->second.scale, line);
     } else if (map.keyframes[line.host].world == change.newer_world) {
-      line.in_host.point *= move.scale;
+      scaleLine(move.scale, line);
     }
   }
   for (Keyframe& keyframe : map.keyframes) {

@@ -22,6 +22,7 @@ struct MapChange {
   struct LinePlace {
     KeyframeId host = -1;
     SpaceLine in_host;
+    double begin = 0, end = 0;
     double scale = 1;  // how much longer lengths around it became: for a line that has another host by now
   };
   struct View {

@@ -80,7 +80,7 @@ void joinWorlds(const WorldJoin& join, Map& map) {
     point.inverse_depth_sigma /= join.to_S_from.scale;
   }
   for (auto& [id, line] : map.lines) {
-    if (map.keyframes[line.host].world == join.from) line.in_host.point *= join.to_S_from.scale;
+    if (map.keyframes[line.host].world == join.from) scaleLine(join.to_S_from.scale, line);
   }
   for (Keyframe& keyframe : map.keyframes) {
     if (keyframe.world != join.from) continue;

@@ -99,7 +99,7 @@ void moveAlong(const std::map<KeyframeId, Similarity>& moves, int world, Map& ma
     point.inverse_depth_sigma /= scale;
   }
   for (auto& [id, line] : map.lines) {
-    if (map.keyframes[line.host].world == world) line.in_host.point *= moveOf(line.host).scale;
+    if (map.keyframes[line.host].world == world) scaleLine(moveOf(line.host).scale, line);
   }
 }
 

@@ -73,6 +73,24 @@ Map madeMapOf(int keyframes) {
   return map;
 }
 
+// A line that these keyframes see, hosted in the first of them.
+void addLine(LineId id, std::vector<KeyframeId> seen_in, Map& map) {
+  MapLine line;
+  line.id = id;
+  line.host = seen_in.front();
+  line.in_host = {{0.3, -0.4, 5}, Eigen::Vector3d(1, 2, 0.1 * static_cast<double>(id)).normalized()};
+  line.is_placed = true;
+  line.begin = -0.5;
+  line.end = 1;
+  line.seen_in = std::move(seen_in);
+  for (const KeyframeId keyframe : line.seen_in) {
+    const EdgeEnd from{{100, 100}, bearing(camera, {100, 100})}, to{{200, 300}, bearing(camera, {200, 300})};
+    map.keyframes[keyframe].straight_edges.push_back({id, from, to, 1e-3});
+  }
+  map.next_line = std::max(map.next_line, id + 1);
+  map.lines.emplace(id, line);
+}
+
 // The whole map in another world, exactly.
 void moveAll(const Similarity& move, Map& map) {
   for (Keyframe& keyframe : map.keyframes) {
@@ -82,6 +100,11 @@ void moveAll(const Similarity& move, Map& map) {
   for (auto& [id, point] : map.points) {
     point.inverse_depth /= move.scale;
     point.inverse_depth_sigma /= move.scale;
+  }
+  for (auto& [id, line] : map.lines) {
+    line.in_host.point *= move.scale;
+    line.begin *= move.scale;
+    line.end *= move.scale;
   }
 }
 
@@ -193,7 +216,16 @@ INSTANTIATE_TEST_SUITE_P(Scale, MapChangeScaled, testing::Values(1.0, 0.7, 1.6))
 TEST_P(MapChangeScaled, AMoveOfTheWholeCopyMovesAllThatCameSince) {
   const double scale = GetParam();
   const Similarity move{scale, rotationExp({0.3, -0.5, 0.9}), {2, -1, 4}};
-  const Map before = madeMapOf(4), grown = madeMapOf(6);
+  Map before = madeMapOf(4), grown = madeMapOf(6);
+  for (Map* map : {&before, &grown}) {
+    addLine(3, {0, 2}, *map);
+    addLine(4, {1, 3}, *map);
+  }
+  addLine(7, {4, 5}, grown);
+  // Line 4 got another host since.
+  const SpaceLine in_world = inWorld(grown, grown.lines.at(4));
+  grown.lines.at(4).host = 3;
+  setInWorld(in_world, grown, grown.lines.at(4));
   Map after = before, should_be = grown;
   moveAll(move, after);
   moveAll(move, should_be);
@@ -212,6 +244,36 @@ TEST_P(MapChangeScaled, AMoveOfTheWholeCopyMovesAllThatCameSince) {
     EXPECT_LT((positionOf(is, id) - worldPosition(should_be, point)).norm(), 1e-8) << id;
     EXPECT_NEAR(is.points.at(id).inverse_depth_sigma, point.inverse_depth_sigma, 1e-9) << id;
     EXPECT_EQ(is.points.at(id).seen_in, point.seen_in) << id;
+  }
+  ASSERT_EQ(is.lines.size(), 3U);
+  for (const auto& [id, line] : should_be.lines) {
+    EXPECT_LT((is.lines.at(id).in_host.point - line.in_host.point).norm(), 1e-9) << id;
+    EXPECT_NEAR(is.lines.at(id).begin, line.begin, 1e-9) << id;
+    EXPECT_NEAR(is.lines.at(id).end, line.end, 1e-9) << id;
+  }
+  EXPECT_EQ(mapProblem(camera, is), "");
+}
+
+TEST(MapChange, LinesAreWhereTheCorrectionPutThemOrGone) {
+  Map before = madeMapOf(4);
+  addLine(3, {0, 2}, before);
+  addLine(4, {1, 3}, before);
+  Map after = before;
+  MapLine& moved = after.lines.at(3);
+  moved.in_host = {{0.2, -0.3, 6}, Eigen::Vector3d(1, 1, 0).normalized()};
+  moved.begin = -1;
+  moved.end = 2;
+  dissolveLine(4, after);
+  Map is = before;
+  applyChange(changeOf(before, after), is);
+  ASSERT_EQ(is.lines.size(), 1U);
+  const MapLine& line = is.lines.at(3);
+  EXPECT_EQ(line.in_host.point, moved.in_host.point);
+  EXPECT_EQ(line.in_host.direction, moved.in_host.direction);
+  EXPECT_EQ(line.begin, -1);
+  EXPECT_EQ(line.end, 2);
+  for (const Keyframe& keyframe : is.keyframes) {
+    for (const SeenEdge& edge : keyframe.straight_edges) EXPECT_NE(edge.line, 4);
   }
   EXPECT_EQ(mapProblem(camera, is), "");
 }

@@ -25,6 +25,19 @@ void addPoint(PointId id, KeyframeId host, std::vector<KeyframeId> seen_in, Map&
   map.points.emplace(id, point);
 }
 
+void addLine(LineId id, std::vector<KeyframeId> seen_in, Map& map) {
+  MapLine line;
+  line.id = id;
+  line.host = seen_in.front();
+  line.in_host = {{0.5, -1, 4}, Eigen::Vector3d(1, 2, -0.5).normalized()};
+  line.is_placed = true;
+  line.begin = -0.5;
+  line.end = 1.5;
+  line.seen_in = std::move(seen_in);
+  for (const KeyframeId keyframe : line.seen_in) map.keyframes[keyframe].straight_edges.push_back({id, {}, {}, 1e-3});
+  map.lines.emplace(id, line);
+}
+
 // Keyframes 0, 1 and 7 in world 0, to which the camera came back; 3 to 5 in world 2.
 Map twoWorlds() {
   Map map;
@@ -35,6 +48,8 @@ Map twoWorlds() {
   addPoint(10, 0, {1, 7}, map);
   addPoint(20, 3, {4, 5}, map);
   addPoint(21, 5, {4}, map);
+  addLine(30, {0, 7}, map);
+  addLine(31, {4, 5}, map);
   return map;
 }
 
@@ -71,6 +86,8 @@ TEST(Worlds, OneCanBeForgotten) {
   EXPECT_EQ(worldsOf(map), std::vector<int>{0});
   EXPECT_EQ(map.points.size(), 1U);
   EXPECT_EQ(map.points.count(10), 1U);
+  EXPECT_EQ(map.lines.size(), 1U);
+  EXPECT_EQ(map.lines.count(30), 1U);
 }
 
 TEST(Worlds, WhatWasBegunLastCanBeForgotten) {
@@ -95,6 +112,17 @@ TEST(Worlds, JoinedTheYoungerIsPartOfTheOlder) {
     const Eigen::Vector3d should_be = id < 20 ? was : Eigen::Vector3d(join.to_S_from * was);
     EXPECT_LT((worldPosition(map, point) - should_be).norm(), 1e-12) << id;
     EXPECT_NEAR(point.inverse_depth_sigma / point.inverse_depth, 0.04, 1e-12) << id;
+  }
+  for (const auto& [id, line] : map.lines) {
+    const double scale = id == 30 ? 1 : join.to_S_from.scale;
+    const SpaceLine was = inWorld(before, before.lines.at(id)), is = inWorld(map, line);
+    for (const double along : {-0.5, 0.0, 1.5}) {
+      const Eigen::Vector3d point = was.point + along * was.direction;
+      const Eigen::Vector3d should_be = id == 30 ? point : Eigen::Vector3d(join.to_S_from * point);
+      EXPECT_LT((is.point + scale * along * is.direction - should_be).norm(), 1e-12) << id;
+    }
+    EXPECT_NEAR(line.begin, -0.5 * scale, 1e-12);
+    EXPECT_NEAR(line.end, 1.5 * scale, 1e-12);
   }
   for (const KeyframeId id : {0, 1, 7}) {
     EXPECT_EQ(map.keyframes[id].world_T_camera.translation, before.keyframes[id].world_T_camera.translation);

@@ -245,6 +245,35 @@ TEST(Culling, BoundsThatTheRecentKeyframesBreakLeaveThoseAlone) {
   EXPECT_TRUE(cullKeyframes(options, small.map, small.candidates).empty());
 }
 
+// A line stays where it is while any keyframe sees it, and goes with the last one.
+TEST(Culling, LinesStayWhileTheyAreSeen) {
+  Walk walk = standing(20);
+  CullingOptions options = withBounds(9, 1000);  // of which 0 to 3 and 15 to 19 stay
+  options.other_views = 100;
+  const EdgeEnd from{{100, 100}, bearing(camera, {100, 100})}, to{{200, 300}, bearing(camera, {200, 300})};
+  for (const std::vector<KeyframeId>& seen_in : {std::vector<KeyframeId>{8, 9, 16}, std::vector<KeyframeId>{10, 11}}) {
+    MapLine line;
+    line.id = walk.map.next_line++;
+    line.host = seen_in.front();
+    line.in_host = {{0.3, -0.4, 5}, Eigen::Vector3d(1, 2, 0.1).normalized()};
+    line.is_placed = true;
+    line.seen_in = seen_in;
+    for (const KeyframeId id : seen_in) walk.map.keyframes[id].straight_edges.push_back({line.id, from, to, 1e-3});
+    walk.map.lines.emplace(line.id, line);
+  }
+  ASSERT_EQ(mapProblem(camera, walk.map), "");
+  const SpaceLine was = inWorld(walk.map, walk.map.lines.at(0));
+  cullKeyframes(options, walk.map, walk.candidates);
+  EXPECT_EQ(mapProblem(camera, walk.map), "");
+  ASSERT_EQ(walk.map.lines.size(), 1U);
+  const MapLine& line = walk.map.lines.at(0);
+  EXPECT_EQ(line.host, 16);
+  EXPECT_EQ(line.seen_in, std::vector<KeyframeId>{16});
+  const SpaceLine is = inWorld(walk.map, line);
+  EXPECT_LT((is.point - was.point).norm(), 1e-9);
+  EXPECT_LT((is.direction - was.direction).norm(), 1e-9);
+}
+
 TEST(Culling, SwitchedOffItDoesNothing) {
   Walk walk = walkOf(60);
   CullingOptions options = withBounds(6, 1);
