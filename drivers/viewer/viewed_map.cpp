@@ -118,6 +118,14 @@ ViewedMap viewedMap(const Map& map, int world, const Camera& camera, std::int64_
     const Eigen::Vector4f q = keyframe.world_T_camera.rotation.coeffs().cast<float>();
     viewed.keyframes.push_back({keyframe.id, {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}});
   }
+  std::vector<MapLineRecord> lines = mapLineRecords(map);
+  keepWorld(lines, world);
+  thin(lines, most_viewed_lines);
+  for (const MapLineRecord& line : lines) {
+    const Eigen::Vector3f from = line.from.cast<float>(), to = line.to.cast<float>();
+    if (from.allFinite() && to.allFinite())
+      viewed.lines.push_back({from.x(), from.y(), from.z(), to.x(), to.y(), to.z()});
+  }
   return viewed;
 }
 
@@ -134,7 +142,8 @@ std::string mapMessage(const ViewedMap& map, const ViewedMap* before) {
                                                        {"keyframes", map.keyframes.size()},
                                                        {"keyframes_in_map", map.keyframes_in_map},
                                                        {"keyframe_runs", keyframes.runs.size() / 2},
-                                                       {"new_keyframes", keyframes.added.size()}});
+                                                       {"new_keyframes", keyframes.added.size()},
+                                                       {"lines", map.lines.size()}});
   for (const std::uint32_t number : points.runs) append(message, number);
   for (const std::uint32_t number : keyframes.runs) append(message, number);
   for (const ViewedPoint& point : points.added) {
@@ -142,6 +151,9 @@ std::string mapMessage(const ViewedMap& map, const ViewedMap* before) {
   }
   for (const ViewedKeyframe& keyframe : keyframes.added) {
     for (const float number : keyframe.pose) appendFloat(message, number);
+  }
+  for (const ViewedLine& line : map.lines) {
+    for (const float coordinate : line) appendFloat(message, coordinate);
   }
   for (const ViewedPoint& point : points.added) append(message, point.grey);
   for (const ViewedPoint& point : points.added) append(message, point.depth_sigma_percent);

@@ -30,9 +30,10 @@ void tellPoses(const RunResult& result, const RunSummary& summary) {
   }
   const WorldSummary& main = summary.worlds.front();
   std::printf("map started by %s\n", result.initialisation.c_str());
-  std::printf("poses for %lld frames, %.1f %% from the first pose on; %lld keyframes, %lld map points\n",
+  std::printf("poses for %lld frames, %.1f %% from the first pose on; %lld keyframes, %lld map points, %lld lines\n",
               static_cast<long long>(summary.final_poses), 100.0 * summary.coverage,
-              static_cast<long long>(main.keyframes), static_cast<long long>(main.map_points));
+              static_cast<long long>(main.keyframes), static_cast<long long>(main.map_points),
+              static_cast<long long>(main.map_lines));
   if (summary.worlds.size() > 1) std::printf("%s\n", worldsInWords(summary.worlds).c_str());
   for (const std::string& event : result.events) std::printf("%s\n", event.c_str());
 }

@@ -74,4 +74,20 @@ std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera
   return records;
 }
 
+std::vector<MapLineRecord> mapLineRecords(const Map& map) {
+  std::vector<MapLineRecord> records;
+  for (const auto& [id, line] : map.lines) {
+    if (!line.is_placed) continue;
+    const SpaceLine in_world = inWorld(map, line);
+    MapLineRecord record;
+    record.from = in_world.point + line.begin * in_world.direction;
+    record.to = in_world.point + line.end * in_world.direction;
+    record.keyframes = static_cast<int>(line.seen_in.size());
+    record.id = id;
+    record.world = map.keyframes[line.host].world;
+    records.push_back(record);
+  }
+  return records;
+}
+
 }  // namespace edgeslam

@@ -107,6 +107,7 @@ RunResult RunRecord::finish(const Mapper& mapper) {
   }
   result_.keyframes = keyframeRecords(map, first_keyframe_);
   result_.map_points = mapPointRecords(map, result_.camera);
+  result_.map_lines = mapLineRecords(map);
   result_.initialisation = mapper.initialisationDescription();
   result_.main_world = mainWorld();
   return std::move(result_);

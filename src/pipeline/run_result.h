@@ -44,6 +44,14 @@ struct MapPointRecord {
   int world = 0;
 };
 
+// A straight edge that is a landmark of the map: what keyframes saw of it.
+struct MapLineRecord {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();  // its ends: world, map units
+  int keyframes = 0;                                                             // that see it
+  std::int64_t id = 0;                                                           // in the map
+  int world = 0;
+};
+
 // A frame with its edges and tracks, for the report.
 struct DrawnFrame {
   std::int64_t index = 0;
@@ -69,6 +77,7 @@ struct RunResult {
   // Of all worlds: maps that could not be joined, each with a coordinate frame and a unit of its own.
   std::vector<KeyframeRecord> keyframes;
   std::vector<MapPointRecord> map_points;
+  std::vector<MapLineRecord> map_lines;
   int main_world = 0;  // the one with most final poses; of several the earliest
   std::vector<DrawnFrame> drawings;
   std::vector<std::string> events;  // recoveries, relocalisations, loops accepted and refused: "frame 120: ..."

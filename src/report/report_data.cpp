@@ -19,6 +19,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t most_map_points = 250000;
+constexpr double farthest = 1e9;  // steps: what is beyond would only bloat the page
 
 void appendPosition(ordered_json& list, const Eigen::Vector3d& position, const Rounding& rounded) {
   for (int i = 0; i < 3; ++i) list.push_back(rounded(position[i]));
@@ -65,6 +66,19 @@ ordered_json keyframesJson(const RunResult& result, const Similarity& display, c
   return keyframes;
 }
 
+// Both ends of each line as whole numbers of `step`.
+ordered_json lineEnds(const std::vector<MapLineRecord>& lines, const Similarity& display, const Rounding& rounded) {
+  ordered_json ends = ordered_json::array();
+  for (const MapLineRecord& line : lines) {
+    const Eigen::Vector3d from = display * line.from / rounded.step(), to = display * line.to / rounded.step();
+    if (!(std::max(from.cwiseAbs().maxCoeff(), to.cwiseAbs().maxCoeff()) < farthest)) continue;
+    for (const Eigen::Vector3d* end : {&from, &to}) {
+      for (int i = 0; i < 3; ++i) ends.push_back(static_cast<std::int64_t>(std::lround((*end)[i])));
+    }
+  }
+  return ends;
+}
+
 // Positions as whole numbers of `step`; `lines` gives the number of points of each line, in the order of the positions.
 ordered_json mapJson(const RunResult& result, const Similarity& display, const Rounding& rounded) {
   std::vector<Eigen::Vector3d> cameras;
@@ -74,7 +88,6 @@ ordered_json mapJson(const RunResult& result, const Similarity& display, const R
   const std::vector<MapPointRecord> points = mapPointsOf(result, result.main_world);
   const std::vector<std::vector<int>> lines = joinChains(points, cameras);
   const std::size_t stride = strideFor(points.size(), most_map_points);
-  constexpr double farthest = 1e9;  // steps: what is beyond would only bloat the page
   ordered_json positions = ordered_json::array();
   ordered_json lengths = ordered_json::array();
   ordered_json chains = ordered_json::array();
@@ -98,8 +111,15 @@ ordered_json mapJson(const RunResult& result, const Similarity& display, const R
     chains.push_back(points[static_cast<std::size_t>(lines[line].front())].chain);
     shown += length;
   }
-  return {{"step", rounded.step()}, {"positions", positions},    {"lines", lengths},        {"chains", chains},
-          {"greys", greys},         {"sigmas_permille", sigmas}, {"points", points.size()}, {"shown", shown}};
+  return {{"step", rounded.step()},
+          {"positions", positions},
+          {"lines", lengths},
+          {"chains", chains},
+          {"greys", greys},
+          {"sigmas_permille", sigmas},
+          {"points", points.size()},
+          {"shown", shown},
+          {"straight", lineEnds(mapLinesOf(result, result.main_world), display, rounded)}};
 }
 
 ordered_json publishedFor(const RunDescription& description) {

@@ -92,7 +92,7 @@ std::vector<FileContent> worldFiles(const RunResult& result, const std::vector<W
     files.push_back({nameOfWorld(trajectory_name, number), formatTrajectory(finalTrajectory(result, world))});
     files.push_back({nameOfWorld(live_name, number), formatTrajectory(liveTrajectory(result, world))});
     files.push_back({nameOfWorld(keyframes_name, number), formatKeyframes(result, world)});
-    files.push_back({nameOfWorld(map_name, number), formatPly(mapPointsOf(result, world))});
+    files.push_back({nameOfWorld(map_name, number), formatPly(mapPointsOf(result, world), mapLinesOf(result, world))});
   }
   std::size_t number = worlds.size();
   for (const int world : formerWorlds(result, worlds)) {

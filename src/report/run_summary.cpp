@@ -123,7 +123,8 @@ ordered_json worldsJson(const RunSummary& summary) {
                       {"frames_with_pose", world.final_poses},
                       {"first_pose_s", optionalJson(world.first_pose_s)},
                       {"keyframes", world.keyframes},
-                      {"map_points", world.map_points}});
+                      {"map_points", world.map_points},
+                      {"map_lines", world.map_lines}});
   }
   return worlds;
 }
@@ -221,6 +222,7 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
           {"first_live_pose_s", optionalJson(summary.first_live_pose_s)},
           {"keyframes", summary.worlds.front().keyframes},
           {"map_points", summary.worlds.front().map_points},
+          {"map_lines", summary.worlds.front().map_lines},
           {"initialisation", result.initialisation},
           {"recoveries", result.recoveries},
           {"relocalisations", result.relocalisations},

@@ -38,6 +38,7 @@ std::vector<WorldSummary> worldsOf(const RunResult& result) {
   };
   for (const KeyframeRecord& keyframe : result.keyframes) count(keyframe.world, &WorldSummary::keyframes);
   for (const MapPointRecord& point : result.map_points) count(point.world, &WorldSummary::map_points);
+  for (const MapLineRecord& line : result.map_lines) count(line.world, &WorldSummary::map_lines);
 
   std::vector<WorldSummary> summaries{worlds[result.main_world]};
   for (const auto& [world, summary] : worlds) {
@@ -84,6 +85,13 @@ std::vector<MapPointRecord> mapPointsOf(const RunResult& result, int world) {
   std::copy_if(result.map_points.begin(), result.map_points.end(), std::back_inserter(points),
                [world](const MapPointRecord& point) { return point.world == world; });
   return points;
+}
+
+std::vector<MapLineRecord> mapLinesOf(const RunResult& result, int world) {
+  std::vector<MapLineRecord> lines;
+  std::copy_if(result.map_lines.begin(), result.map_lines.end(), std::back_inserter(lines),
+               [world](const MapLineRecord& line) { return line.world == world; });
+  return lines;
 }
 
 std::string worldsInWords(const std::vector<WorldSummary>& worlds) {

@@ -17,6 +17,7 @@ struct WorldSummary {
   std::int64_t final_poses = 0;  // frames with a final pose in it
   std::int64_t keyframes = 0;
   std::int64_t map_points = 0;
+  std::int64_t map_lines = 0;
   std::optional<double> first_pose_s;  // from the first frame to the first final pose in it [s]
 };
 
@@ -33,6 +34,7 @@ Trajectory liveTrajectory(const RunResult& result, int world);
 Trajectory keyframeTrajectory(const RunResult& result, int world);
 
 std::vector<MapPointRecord> mapPointsOf(const RunResult& result, int world);
+std::vector<MapLineRecord> mapLinesOf(const RunResult& result, int world);
 
 bool hasFinalPoseIn(const FrameRecord& frame, int world);
 bool hasGoodLivePoseIn(const FrameRecord& frame, int world);

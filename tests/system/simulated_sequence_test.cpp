@@ -62,7 +62,8 @@ TEST_P(SimulatedSequence, TheMapLiesOnTheSurfaces) {
   const AbsoluteError error = absoluteError(readTrajectory(result("trajectory.txt")),
                                             readTrajectory(sequence("groundtruth.txt")), Alignment::similarity);
   const auto points = readMapPoints(result("map.ply"));
-  ASSERT_EQ(points.size(), summary_["map_points"].get<std::size_t>());
+  const auto lines = summary_["map_lines"].get<std::size_t>();
+  ASSERT_EQ(points.size(), summary_["map_points"].get<std::size_t>() + 2 * lines);
   EXPECT_GT(points.size(), 200U);
   EXPECT_LT(medianDistanceToSurfaces(points, error.reference_T_estimate, readSurfaces(sequence("surfaces.txt"))),
             GetParam().surface_m);

@@ -35,8 +35,9 @@ function readMap(description, rest, before) {
   const added = description.new_points;
   const positions = putTogether(runs, count, 3, known.positions, take(Float32Array, 3 * added));
   const keyframes = putTogether(keyframeRuns, description.keyframes, 7, known.keyframes, take(Float32Array, 7 * description.new_keyframes));
+  const straight = take(Float32Array, 6 * description.lines);
   const [greys, sigmas, joins] = ['greys', 'sigmas', 'joins'].map((name) => putTogether(runs, count, 1, known[name], take(Uint8Array, added)));
-  return { number: description.number, count, positions, greys, sigmas, joins, keyframes, world: description.world };
+  return { number: description.number, count, positions, greys, sigmas, joins, keyframes, straight, world: description.world };
 }
 
 function quantile(values, share) {
@@ -90,11 +91,12 @@ class MapView {
     canvas.addEventListener('keydown', (event) => this.turnByKey(event));
     this.points = new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({ size: 2 * (window.devicePixelRatio || 1), sizeAttenuation: false, vertexColors: THREE.VertexColors }));
     this.lines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ vertexColors: THREE.VertexColors }));
+    this.straight = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial());
     this.way = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial());
     this.frusta = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ transparent: true, opacity: 0.5 }));
     this.recent = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial());
     this.now = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial());
-    for (const drawn of [this.points, this.lines, this.way, this.frusta, this.recent, this.now]) {
+    for (const drawn of [this.points, this.lines, this.straight, this.way, this.frusta, this.recent, this.now]) {
       drawn.frustumCulled = false;
       setPositions(drawn.geometry, []);
       this.scene.add(drawn);
@@ -137,7 +139,7 @@ class MapView {
 
   fill() {
     if (!this.map) return;
-    const { count, positions, greys, sigmas, joins } = this.map;
+    const { count, positions, greys, sigmas, joins, straight } = this.map;
     const dark = window.matchMedia('(prefers-color-scheme: dark)').matches;
     const bound = this.controls.uncertain.checked ? 255 : MOST_CERTAIN;
     const colours = new Float32Array(3 * count);
@@ -156,6 +158,7 @@ class MapView {
     }
     this.points.geometry.setIndex(shown);
     this.lines.geometry.setIndex(segments);
+    setPositions(this.straight.geometry, straight);
     this.shownPoints = shown.length;
   }
 
@@ -247,6 +250,7 @@ class MapView {
   recolour() {
     const colour = (name) => new THREE.Color(cssText(name));
     this.scene.background = colour('--page');
+    this.straight.material.color.copy(colour('--tracking'));
     this.way.material.color.copy(colour('--way'));
     this.frusta.material.color.copy(colour('--way'));
     this.recent.material.color.copy(colour('--live'));

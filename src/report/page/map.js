@@ -130,13 +130,16 @@ function mapView(host, run, controls, cursor) {
   lineGeometry.setAttribute('color', pointGeometry.getAttribute('color'));
   const points = new THREE.Points(pointGeometry, new THREE.PointsMaterial({ size: 2 * (window.devicePixelRatio || 1), sizeAttenuation: false, vertexColors: THREE.VertexColors }));
   const lines = new THREE.LineSegments(lineGeometry, new THREE.LineBasicMaterial({ vertexColors: THREE.VertexColors }));
+  const straightGeometry = new THREE.BufferGeometry();
+  straightGeometry.setAttribute('position', new THREE.Float32BufferAttribute(run.map.straight.map((number) => number * run.map.step), 3));
+  const straight = new THREE.LineSegments(straightGeometry, new THREE.LineBasicMaterial());
   const way = lineOf(trajectory, 0);
   const truth = lineOf(run.truth ? run.truth.positions : [], 0);
   const frusta = frustaOf(run, 0.05 * view.radius);
   const mark = new THREE.Mesh(new THREE.SphereGeometry(0.018 * view.radius, 16, 12), new THREE.MeshBasicMaterial());
   mark.visible = false;
-  for (const drawn of [points, lines, way, truth, frusta, mark]) drawn.frustumCulled = false;
-  scene.add(points, lines, truth, way, frusta, mark);
+  for (const drawn of [points, lines, straight, way, truth, frusta, mark]) drawn.frustumCulled = false;
+  scene.add(points, lines, straight, truth, way, frusta, mark);
 
   let pending = false;
   const render = () => {
@@ -169,6 +172,7 @@ function mapView(host, run, controls, cursor) {
     scene.background = cssColour('--surface');
     way.material.color.copy(cssColour('--estimate'));
     truth.material.color.copy(cssColour('--truth'));
+    straight.material.color.copy(cssColour('--live'));
     frusta.material.color.copy(cssColour('--keyframe'));
     mark.material.color.copy(cssColour('--cursor'));
     render();
@@ -178,12 +182,13 @@ function mapView(host, run, controls, cursor) {
     const shown = countBelow(map.pointSigmas, 10 * bound);
     pointGeometry.setDrawRange(0, shown);
     lineGeometry.setDrawRange(0, 2 * countBelow(map.segmentSigmas, 10 * bound));
-    lines.visible = controls.lines.checked;
+    lines.visible = straight.visible = controls.lines.checked;
     frusta.visible = controls.frusta.checked;
     controls.sigmaValue.textContent = bound >= 100 ? 'all' : bound + ' %';
     const thinned = run.map.shown < run.map.points ? ` (thinned from ${run.map.points.toLocaleString('en')} to keep the page small)` : '';
+    const straightEdges = run.map.straight.length / 6;
     controls.caption.textContent = `${shown.toLocaleString('en')} of ${run.map.shown.toLocaleString('en')} map points${thinned}; neighbours along an image edge ` +
-      `are joined. Drag to turn, wheel to come nearer, right button to shift. Blue: the camera's way` +
+      `are joined${straightEdges ? `; orange: ${straightEdges.toLocaleString('en')} lines` : ''}. Drag to turn, wheel to come nearer, right button to shift. Blue: the camera's way` +
       `${run.truth ? '; grey: ground truth' : ''}. Up is ${run.axes[2]}${run.aligned ? ' of the ground truth' : ' of the first keyframe'}.`;
     render();
   };

@@ -52,6 +52,28 @@ TEST(MapRecords, DirectionsRunAlongTheEdges) {
   EXPECT_GT(directed, 0.9 * static_cast<double>(records.size()));
 }
 
+TEST(MapRecords, LinesGoFromEndToEndOfWhatWasSeen) {
+  Map map = mapOfEdges();
+  for (Keyframe& keyframe : map.keyframes) keyframe.world = 2;
+  MapLine line;
+  line.id = 5;
+  line.host = 1;
+  line.in_host = {{0, 0, 3}, Eigen::Vector3d::UnitY()};
+  line.begin = -1;
+  line.end = 0.5;
+  line.seen_in = {0, 1};
+  map.lines.emplace(5, line);
+  EXPECT_TRUE(mapLineRecords(map).empty()) << "it is not placed";
+  map.lines.at(5).is_placed = true;
+  const auto records = mapLineRecords(map);
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_LT((records[0].from - Eigen::Vector3d(0.4, -1, 3)).norm(), 1e-12);
+  EXPECT_LT((records[0].to - Eigen::Vector3d(0.4, 0.5, 3)).norm(), 1e-12);
+  EXPECT_EQ(records[0].id, 5);
+  EXPECT_EQ(records[0].keyframes, 2);
+  EXPECT_EQ(records[0].world, 2);
+}
+
 TEST(MapRecords, EdgesOfDifferentKeyframesAreDifferentEdges) {
   Map map;
   for (const KeyframeId host : {0, 1}) {

@@ -31,7 +31,7 @@ TEST(Ply, HoldsEveryPropertyInTheDocumentedOrder) {
   points[1].grey = 200;
   points[0].position.setZero();
   points[0].edge_direction.setZero();
-  const std::string bytes = body(formatPly(points));
+  const std::string bytes = body(formatPly(points, {}));
   ASSERT_EQ(bytes.size(), 2 * vertex_bytes);
   EXPECT_EQ(valueAt<std::int32_t>(bytes, 24), -1);
   const std::string second = bytes.substr(vertex_bytes);
@@ -44,7 +44,7 @@ TEST(Ply, HoldsEveryPropertyInTheDocumentedOrder) {
 }
 
 TEST(Ply, TheHeaderSaysWhatFollows) {
-  const std::string ply = formatPly(std::vector<MapPointRecord>(3, {{0, 0, 0}, {0, 0, 0}, 1, 1, 0, 0}));
+  const std::string ply = formatPly(std::vector<MapPointRecord>(3, {{0, 0, 0}, {0, 0, 0}, 1, 1, 0, 0}), {});
   EXPECT_EQ(ply.rfind("ply\nformat binary_little_endian 1.0\n", 0), 0U);
   EXPECT_NE(ply.find("element vertex 3\n"), std::string::npos);
   std::size_t at = 0;
@@ -56,9 +56,33 @@ TEST(Ply, TheHeaderSaysWhatFollows) {
   }
 }
 
+TEST(Ply, LinesAreEdgesBetweenVerticesOfTheirOwn) {
+  const std::vector<MapPointRecord> points(3);
+  std::vector<MapLineRecord> lines(2);
+  lines[1].from = {1, 2, 3};
+  lines[1].to = {1, 2, 5};
+  const std::string ply = formatPly(points, lines);
+  EXPECT_NE(ply.find("element vertex 7\n"), std::string::npos);
+  EXPECT_NE(ply.find("element edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n"), std::string::npos);
+  const std::string bytes = body(ply);
+  ASSERT_EQ(bytes.size(), 7 * vertex_bytes + 2 * 8);
+  const std::string ends = bytes.substr(5 * vertex_bytes);
+  const float from[]{1, 2, 3, 0, 0, 1}, to[]{1, 2, 5, 0, 0, 1};
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(valueAt<float>(ends, 4 * i), from[i]);
+    EXPECT_EQ(valueAt<float>(ends, vertex_bytes + 4 * i), to[i]);
+  }
+  EXPECT_EQ(valueAt<std::int32_t>(ends, 24), -1);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(valueAt<std::int32_t>(ends, 2 * vertex_bytes + 4 * i), 3 + static_cast<std::int32_t>(i));
+  }
+  // A line of no length has no direction, and is no trouble.
+  EXPECT_EQ(valueAt<float>(bytes.substr(3 * vertex_bytes), 12), 0);
+}
+
 TEST(Ply, AnEmptyMapIsAValidFile) {
-  EXPECT_NE(formatPly({}).find("element vertex 0\n"), std::string::npos);
-  EXPECT_EQ(body(formatPly({})), "");
+  EXPECT_NE(formatPly({}, {}).find("element vertex 0\n"), std::string::npos);
+  EXPECT_EQ(body(formatPly({}, {})), "");
 }
 
 }  // namespace

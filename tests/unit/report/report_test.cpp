@@ -117,7 +117,16 @@ TEST(Report, drawsTheMainWorldAlone) {
   for (std::size_t i = 100; i < 120; ++i) run.frames[i].world = run.frames[i].final_world = 1;
   run.keyframes.back().world = 1;
   for (MapPointRecord& point : run.map_points) point.world = point.chain == 2 ? 1 : 0;
+  for (const int world : {0, 1, 0}) {
+    MapLineRecord line;
+    line.to = {0, 1, 2};
+    line.world = world;
+    run.map_lines.push_back(line);
+  }
+  run.map_lines.back().to.z() = std::numeric_limits<double>::quiet_NaN();
   const nlohmann::json data = dataIn(pageOf(run, describeMadeRun(), std::nullopt));
+  ASSERT_EQ(data["map"]["straight"].size(), 6U);
+  EXPECT_NE(data["map"]["straight"][5].get<int>(), data["map"]["straight"][2].get<int>());
   EXPECT_EQ(data["trajectory"]["times"].size(), 89U);
   EXPECT_EQ(data["live"]["times"].size(), 89U);
   EXPECT_EQ(data["keyframes"].size(), run.keyframes.size() - 1);

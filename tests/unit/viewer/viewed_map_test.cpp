@@ -79,6 +79,10 @@ ViewedMap received(const std::string& message, const ViewedMap& before) {
   for (ViewedKeyframe& keyframe : keyframes) {
     for (float& number : keyframe.pose) number = reader.next<float>();
   }
+  std::vector<ViewedLine> lines(reader.description["lines"].get<std::size_t>());
+  for (ViewedLine& line : lines) {
+    for (float& coordinate : line) coordinate = reader.next<float>();
+  }
   for (ViewedPoint& point : points) point.grey = reader.next<std::uint8_t>();
   for (ViewedPoint& point : points) point.depth_sigma_percent = reader.next<std::uint8_t>();
   for (ViewedPoint& point : points) point.joined = reader.next<std::uint8_t>();
@@ -87,6 +91,7 @@ ViewedMap received(const std::string& message, const ViewedMap& before) {
   map.number = reader.description["number"];
   map.points = putTogether(point_runs, before.points, points);
   map.keyframes = putTogether(keyframe_runs, before.keyframes, keyframes);
+  map.lines = lines;
   EXPECT_EQ(reader.description["points"], map.points.size());
   EXPECT_EQ(reader.description["keyframes"], map.keyframes.size());
   return map;
@@ -102,6 +107,7 @@ void expectSame(const ViewedMap& a, const ViewedMap& b) {
   }
   ASSERT_EQ(a.keyframes.size(), b.keyframes.size());
   for (std::size_t i = 0; i < a.keyframes.size(); ++i) ASSERT_EQ(a.keyframes[i].pose, b.keyframes[i].pose) << i;
+  ASSERT_EQ(a.lines, b.lines);
 }
 
 ViewedMap madeList(std::mt19937& random, int points, int keyframes) {
@@ -111,6 +117,7 @@ ViewedMap madeList(std::mt19937& random, int points, int keyframes) {
     map.points.push_back({i, {number(), number(), number()}, static_cast<std::uint8_t>(i), 12, 1});
   }
   for (int i = 0; i < keyframes; ++i) map.keyframes.push_back({i, {number(), 0, 0, 0, 0, 0, 1}});
+  for (int i = 0; i < std::min(keyframes, 2); ++i) map.lines.push_back({number(), 0, 0, number(), 1, 2});
   return map;
 }
 
@@ -180,6 +187,9 @@ TEST(ViewedMap, HasItsPointsAndKeyframes) {
   EXPECT_EQ(map.points.size(), saved.map.points.size());
   EXPECT_EQ(map.points_in_map, saved.map.points.size());
   ASSERT_EQ(map.keyframes.size(), 4U);
+  ASSERT_EQ(map.lines.size(), 1U) << "the other line is not placed";
+  const SpaceLine line = inWorld(saved.map, saved.map.lines.at(3));
+  EXPECT_FLOAT_EQ(map.lines[0][3], static_cast<float>((line.point + line.direction / 3).x()));
   for (const ViewedPoint& point : map.points) {
     for (const float coordinate : point.position) EXPECT_TRUE(std::isfinite(coordinate));
   }
@@ -194,6 +204,7 @@ TEST(ViewedMap, ShowsOneWorldAlone) {
   const ViewedMap other = viewedMap(saved.map, 7, saved.camera, 1);
   EXPECT_TRUE(other.points.empty());
   EXPECT_TRUE(other.keyframes.empty());
+  EXPECT_TRUE(other.lines.empty());
   EXPECT_EQ(other.points_in_map, 0U);
   EXPECT_EQ(Reader(mapMessage(other, nullptr)).description["world"], 7);
 }
