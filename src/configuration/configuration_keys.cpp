@@ -275,8 +275,7 @@ Keys methodKeys(Settings& settings) {
       {"edge_lock.longest_move", &edge_lock.longest_move, "px", 0, 100, "a longer way is not taken"},
 
       heading("lines", "Straight edges become lines of the map"),
-      {"lines.enabled", &straight_edges.enabled, "", 0, 0,
-       "on for trials: bare corridors drift less, but one run in eight lost its scale"},
+      {"lines.enabled", &straight_edges.enabled, "", 0, 0, "off only to measure what it gains"},
       {"lines.least_length", &straight_edges.least_length, "px", 10, 10000, "shorter edges are points only"},
       {"lines.least_parallax_deg", &adjustment.lines.least_parallax_deg, "deg", 0.1, 90,
        "largest angle between the planes through a line and two keyframes"},
@@ -321,7 +320,11 @@ Keys methodKeys(Settings& settings) {
        "share of the scene's distance: less certain, and the pose is lost"},
 
       heading("keyframes", "Choice of the keyframes (P8 to P12)"),
-      {"keyframes.rotation_deg", &keyframes.rotation_deg, "deg", 1, 180, "rotation since the last keyframe"},
+      {"keyframes.rotation_deg", &keyframes.rotation_deg, "deg", 1, 180, "rotation since the last keyframe ..."},
+      {"keyframes.bare_rotation_deg", &keyframes.bare_rotation_deg, "deg", 1, 180,
+       "... and in front of a bare scene ..."},
+      {"keyframes.bare_share", &keyframes.bare_share, "", 0, 1,
+       "... with fewer map points than fewest_mapped, and more than this share of the tracks on straight edges"},
       {"keyframes.track_share", &keyframes.track_share, "", 0, 1, "correspondences left, of their running average"},
       {"keyframes.fewest_mapped", &keyframes.fewest_mapped, "points", 4, 10000,
        "map points that agree with the pose ..."},

@@ -13,7 +13,7 @@
 namespace edgeslam {
 
 struct StraightEdgeOptions {
-  bool enabled = false;
+  bool enabled = true;
   double least_length = 25;    // [px]
   double largest_offset = 1;   // of an edge point from the straight line through its piece's ends [px]
   double largest_bend = 0.35;  // how far a parabola through the piece would leave the straight line [px]

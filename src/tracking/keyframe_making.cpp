@@ -59,6 +59,8 @@ KeyframeDecision KeyframeMaking::judge(const MapView& view, const FollowedFrame&
     evidence.mean_displacement_px += (track.pixel - track.last_keyframe_pixel).norm();
   evidence.mean_displacement_px /= std::max<double>(1, static_cast<double>(frame.tracks.size()));
   evidence.tracks = static_cast<int>(frame.tracks.size());
+  evidence.on_straight_edges = static_cast<int>(std::count_if(
+      frame.tracks.begin(), frame.tracks.end(), [](const Track& track) { return track.straight_edge >= 0; }));
   evidence.average_tracks = average_tracks_;
   evidence.mapped = frame.inlier_count;
   evidence.mapped_at_keyframe = most_mapped_;

@@ -6,7 +6,11 @@
 namespace edgeslam {
 
 struct KeyframeOptions {
-  double rotation_deg = 15;   // P8: rotation to the last keyframe [deg]
+  double rotation_deg = 15;  // P8: rotation to the last keyframe [deg] ...
+  // ... where the scene is bare: fewer map points than `fewest_mapped`, and this share of the tracks on straight edges.
+  // There few lines have to tell everything, and several keyframes must have seen each before it leaves the image.
+  double bare_rotation_deg = 7;
+  double bare_share = 0.25;
   double track_share = 0.6;   // P9: correspondences left, as a share of the running average, which falls with them
   int fewest_mapped = 250;    // P10: 3D-2D correspondences ...
   double mapped_share = 0.6;  // ... or this share of the most since the last keyframe, if less: bare scenes stay calm
@@ -25,6 +29,7 @@ struct KeyframeEvidence {
   double rotation_deg = 0;  // since the last keyframe
   double mean_displacement_px = 0;
   int tracks = 0;              // correspondences with the last keyframe
+  int on_straight_edges = 0;   // those of them that were on straight edges there
   double average_tracks = 0;   // running average of these over the frames
   int mapped = 0;              // 3D-2D correspondences
   int mapped_at_keyframe = 0;  // the most there were since the last keyframe

@@ -32,9 +32,11 @@ inline std::vector<Triangle> readSurfaces(const std::string& path) {
 // Positions of a map.ply's points (39 bytes each, the position first).
 inline std::vector<Eigen::Vector3d> readMapPoints(const std::string& path) {
   constexpr std::size_t bytes_a_point = 12 + 12 + 8 + 4 + 3;
-  const std::string content = fileContent(path), end = "end_header\n";
+  const std::string content = fileContent(path), count = "element vertex ", end = "end_header\n";
+  const std::size_t begin = content.find(end) + end.size();
+  const std::size_t vertices = std::stoul(content.substr(content.find(count) + count.size()));
   std::vector<Eigen::Vector3d> points;
-  for (std::size_t at = content.find(end) + end.size(); at + bytes_a_point <= content.size(); at += bytes_a_point) {
+  for (std::size_t at = begin; at + bytes_a_point <= content.size() && points.size() < vertices; at += bytes_a_point) {
     std::array<float, 3> position{};
     std::memcpy(position.data(), content.data() + at, sizeof position);
     points.emplace_back(position[0], position[1], position[2]);

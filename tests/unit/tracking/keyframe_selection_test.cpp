@@ -60,6 +60,29 @@ TEST(KeyframeSelection, EachCriterionByItself) {
   }
 }
 
+TEST(KeyframeSelection, InFrontOfBareWallsASmallerRotationIsEnough) {
+  for (const int on_straight_edges : {125, 126}) {
+    KeyframeEvidence evidence = calm();
+    evidence.on_straight_edges = on_straight_edges;
+    evidence.mapped = 249;
+    evidence.mapped_at_keyframe = 260;
+    evidence.rotation_deg = 6.9;
+    EXPECT_EQ(selectKeyframe(evidence, width, KeyframeOptions()).choice, KeyframeChoice::none);
+    evidence.rotation_deg = 7.1;
+    const KeyframeDecision decision = selectKeyframe(evidence, width, KeyframeOptions());
+    EXPECT_EQ(decision.choice, on_straight_edges > 125 ? KeyframeChoice::previous_frame : KeyframeChoice::none);
+    evidence.mapped = 250;
+    EXPECT_EQ(selectKeyframe(evidence, width, KeyframeOptions()).choice, KeyframeChoice::none);
+  }
+  // A smaller angle asked for everywhere holds here, too.
+  KeyframeOptions options;
+  options.rotation_deg = 4;
+  KeyframeEvidence evidence = calm();
+  evidence.on_straight_edges = 400;
+  evidence.mapped = 249;
+  EXPECT_EQ(selectKeyframe(evidence, width, options).choice, KeyframeChoice::previous_frame);
+}
+
 TEST(KeyframeSelection, ACameraThatStandsStillMakesNoneHoweverLong) {
   KeyframeEvidence evidence = calm();
   evidence.seconds = 600;
