@@ -66,12 +66,16 @@ ordered_json keyframesJson(const RunResult& result, const Similarity& display, c
   return keyframes;
 }
 
+bool canBeDrawn(const Eigen::Vector3d& position) {
+  return position.allFinite() && position.cwiseAbs().maxCoeff() < farthest;
+}
+
 // Both ends of each line as whole numbers of `step`.
 ordered_json lineEnds(const std::vector<MapLineRecord>& lines, const Similarity& display, const Rounding& rounded) {
   ordered_json ends = ordered_json::array();
   for (const MapLineRecord& line : lines) {
     const Eigen::Vector3d from = display * line.from / rounded.step(), to = display * line.to / rounded.step();
-    if (!(std::max(from.cwiseAbs().maxCoeff(), to.cwiseAbs().maxCoeff()) < farthest)) continue;
+    if (!canBeDrawn(from) || !canBeDrawn(to)) continue;
     for (const Eigen::Vector3d* end : {&from, &to}) {
       for (int i = 0; i < 3; ++i) ends.push_back(static_cast<std::int64_t>(std::lround((*end)[i])));
     }
@@ -99,7 +103,7 @@ ordered_json mapJson(const RunResult& result, const Similarity& display, const R
     for (const int index : lines[line]) {
       const MapPointRecord& point = points[static_cast<std::size_t>(index)];
       const Eigen::Vector3d position = display * point.position / rounded.step();
-      if (!(position.cwiseAbs().maxCoeff() < farthest)) continue;
+      if (!canBeDrawn(position)) continue;
       for (int i = 0; i < 3; ++i) positions.push_back(static_cast<std::int64_t>(std::lround(position[i])));
       greys.push_back(point.grey);
       const float sigma = std::isfinite(point.depth_sigma_ratio) ? point.depth_sigma_ratio : 1.0F;

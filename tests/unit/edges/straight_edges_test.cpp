@@ -21,12 +21,6 @@ Camera cameraOf() {
   return camera;
 }
 
-StraightEdgeOptions found() {
-  StraightEdgeOptions options;
-  options.enabled = true;
-  return options;
-}
-
 // A turned square, drawn four times as large.
 const std::vector<Eigen::Vector2d> corners{{100, 60}, {220, 75}, {205, 190}, {90, 170}};
 
@@ -42,7 +36,7 @@ cv::Mat polygon(int inside, int outside) {
   return image;
 }
 
-StraightEdges edgesOf(const cv::Mat& image, const StraightEdgeOptions& options = found()) {
+StraightEdges edgesOf(const cv::Mat& image, const StraightEdgeOptions& options = {}) {
   return straightEdges(cameraOf(), detectEdges(image, EdgeOptions()), options);
 }
 
@@ -92,10 +86,12 @@ TEST(StraightEdges, AreNotFoundOnCircles) {
 }
 
 TEST(StraightEdges, AreNoneWhereTheyAreSwitchedOffOrTooShort) {
-  StraightEdgeOptions options = found();
+  StraightEdgeOptions options;
   options.least_length = 130;
   EXPECT_EQ(edgesOf(polygon(bright, dark), options).size(), 0U);
-  EXPECT_EQ(edgesOf(polygon(bright, dark), StraightEdgeOptions()).size(), 0U);
+  options = {};
+  options.enabled = false;
+  EXPECT_EQ(edgesOf(polygon(bright, dark), options).size(), 0U);
 }
 
 TEST(StraightEdges, KnowTheirPoints) {

@@ -37,9 +37,7 @@ class EdgeTracks : public testing::Test {
     image(cv::Range(top, bottom), cv::Range(left, right)).setTo(170);
     cv::GaussianBlur(image, image, {}, 0.8);
     frame.edges = std::make_shared<EdgeMap>(detectEdges(image, EdgeOptions()));
-    StraightEdgeOptions options;
-    options.enabled = true;
-    straight = straightEdges(camera, *frame.edges, options);
+    straight = straightEdges(camera, *frame.edges, StraightEdgeOptions());
   }
 
   // Five tracks on the left side and four on the upper, `off` pixels outside.
