@@ -26,8 +26,7 @@ std::map<PointId, LineId> latestLines(const LineOptions& options, const Map& map
   for (std::size_t k = recent.size(); k-- > 0;) {
     const Keyframe& before = map.keyframes[recent[k]];
     for (const PointObservation& seen : before.observations) {
-      if (seen.straight_edge < 0) continue;
-      const LineId line = before.straight_edges[static_cast<std::size_t>(seen.straight_edge)].line;
+      const LineId line = lineOf(before, seen);
       if (line >= 0) latest[seen.point] = line;
     }
   }

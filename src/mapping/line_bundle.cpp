@@ -57,8 +57,7 @@ std::map<PointId, LineId> pointsOnLines(const Map& map, const std::vector<Keyfra
   for (const KeyframeId id : keyframes) {
     const Keyframe& keyframe = map.keyframes[id];
     for (const PointObservation& seen : keyframe.observations) {
-      if (seen.straight_edge < 0) continue;
-      const LineId line = keyframe.straight_edges[static_cast<std::size_t>(seen.straight_edge)].line;
+      const LineId line = lineOf(keyframe, seen);
       if (line >= 0 && map.lines.at(line).is_placed) ++votes[seen.point][line];
     }
   }

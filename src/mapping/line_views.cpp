@@ -6,6 +6,10 @@
 
 namespace edgeslam {
 
+LineId lineOf(const Keyframe& keyframe, const PointObservation& seen) {
+  return seen.straight_edge < 0 ? -1 : keyframe.straight_edges[static_cast<std::size_t>(seen.straight_edge)].line;
+}
+
 WorldRay worldRay(const Camera& camera, const Keyframe& keyframe, const EdgeEnd& end) {
   const Pose world_T_row = worldTRow(camera, {keyframe.world_T_camera, keyframe.twist}, end.pixel.y());
   return {world_T_row.translation, world_T_row.rotation * end.bearing};

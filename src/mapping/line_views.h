@@ -9,6 +9,9 @@
 
 namespace edgeslam {
 
+// The line that a keyframe sees a point on, or -1.
+LineId lineOf(const Keyframe& keyframe, const PointObservation& seen);
+
 // An end of a straight edge as a ray of the world.
 struct WorldRay {
   Eigen::Vector3d origin, direction;  // unit

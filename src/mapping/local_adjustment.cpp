@@ -172,7 +172,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
     }
   }
   const auto indexOf = [&](KeyframeId keyframe) { return camera_of[static_cast<std::size_t>(keyframe)]; };
-  addMotionAlongLines(map, lines.lines, indexOf, problem);
+  addMotionAlongLines(camera, map, lines.lines, indexOf, problem);
   const BundleResult result = adjustBundle(camera, problem, options.bundle, interrupted);
   if (!result.usable) return false;
 

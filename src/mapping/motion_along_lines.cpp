@@ -21,10 +21,6 @@ struct Slide {
   const PointObservation* now;
 };
 
-LineId lineOf(const Keyframe& keyframe, const PointObservation& seen) {
-  return seen.straight_edge < 0 ? -1 : keyframe.straight_edges[static_cast<std::size_t>(seen.straight_edge)].line;
-}
-
 // Tracks that both keyframes see on the same line, by line.
 std::map<LineId, std::vector<Slide>> slidesBetween(const Keyframe& before, const Keyframe& now) {
   std::map<LineId, std::vector<Slide>> slides;
@@ -37,16 +33,17 @@ std::map<LineId, std::vector<Slide>> slidesBetween(const Keyframe& before, const
   return slides;
 }
 
-// Where a keyframe's ray meets a line.
-std::optional<BundlePoint> pointOnLine(const SpaceLine& line, const Keyframe& host, const Eigen::Vector3d& bearing,
-                                       int camera) {
-  const Eigen::Vector3d& centre = host.world_T_camera.translation;
-  const Eigen::Vector3d ray = host.world_T_camera.rotation * bearing;
-  const double distance = distanceAlongRay(line, centre, ray);
+// Where the ray of a keyframe's row, on which it sees a track, meets a line.
+std::optional<BundlePoint> pointOnLine(const Camera& camera, const SpaceLine& line, const Keyframe& host,
+                                       const PointObservation& seen, int host_index) {
+  const Eigen::Vector3d row_centre = rowPose(camera, host.twist, seen.measurement.pixel.y()).translation;
+  const Eigen::Vector3d origin = host.world_T_camera * row_centre;
+  const Eigen::Vector3d ray = host.world_T_camera.rotation * seen.bearing;
+  const double distance = distanceAlongRay(line, origin, ray);
   if (!(distance > 0) || !std::isfinite(distance)) return std::nullopt;
-  const Eigen::Vector3d in_host = host.world_T_camera.inverse() * closestPoint(line, centre + distance * ray);
+  const Eigen::Vector3d in_host = host.world_T_camera.inverse() * closestPoint(line, origin + distance * ray);
   BundlePoint point;
-  point.host = camera;
+  point.host = host_index;
   point.host_bearing = in_host.normalized();
   point.inverse_depth = point.prior_inverse_depth = 1 / in_host.norm();
   point.prior_sigma = relative_depth_sigma * point.inverse_depth;
@@ -55,12 +52,12 @@ std::optional<BundlePoint> pointOnLine(const SpaceLine& line, const Keyframe& ho
 
 }  // namespace
 
-void addMotionAlongLines(const Map& map, const std::vector<LineId>& lines,
+void addMotionAlongLines(const Camera& camera, const Map& map, const std::vector<LineId>& lines,
                          const std::function<int(KeyframeId)>& camera_of, BundleProblem& problem) {
   std::map<LineId, SpaceLine> in_world;
   for (const LineId id : lines) in_world[id] = inWorld(map, map.lines.at(id));
   if (in_world.empty()) return;
-  const auto isFixed = [&](int camera) { return problem.cameras[static_cast<std::size_t>(camera)].fixed; };
+  const auto isFixed = [&](int index) { return problem.cameras[static_cast<std::size_t>(index)].fixed; };
   for (const Keyframe& now : map.keyframes) {
     const KeyframeId last = keyframeBefore(map, now.id);
     if (last < 0) continue;
@@ -72,7 +69,7 @@ void addMotionAlongLines(const Map& map, const std::vector<LineId>& lines,
       if (found == in_world.end()) continue;
       const double sigma = sigma_along * std::sqrt(static_cast<double>(slides.size()));
       for (const Slide& slide : slides) {
-        const auto point = pointOnLine(found->second, before, slide.before->bearing, camera_before);
+        const auto point = pointOnLine(camera, found->second, before, *slide.before, camera_before);
         if (!point) continue;
         Measurement measurement = slide.now->measurement;
         measurement.sigma_normal = unknown_across;

@@ -6,20 +6,12 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "synthetic_image.h"
+
 namespace edgeslam {
 namespace {
 
 constexpr int dark = 60, bright = 160;
-
-Camera cameraOf() {
-  Camera camera;
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = camera.fy = 300;
-  camera.cx = 159.5;
-  camera.cy = 119.5;
-  return camera;
-}
 
 // A turned square, drawn four times as large.
 const std::vector<Eigen::Vector2d> corners{{100, 60}, {220, 75}, {205, 190}, {90, 170}};
@@ -37,7 +29,7 @@ cv::Mat polygon(int inside, int outside) {
 }
 
 StraightEdges edgesOf(const cv::Mat& image, const StraightEdgeOptions& options = {}) {
-  return straightEdges(cameraOf(), detectEdges(image, EdgeOptions()), options);
+  return straightEdges(cameraOfDrawing(), detectEdges(image, EdgeOptions()), options);
 }
 
 // Distance of a pixel from the nearest side's line, and from the nearest corner.
@@ -56,7 +48,7 @@ TEST(StraightEdges, AreTheSidesOfAPolygon) {
   for (const StraightEdge& edge : edges) {
     EXPECT_GT((edge.to - edge.from).norm(), 90);
     for (const Eigen::Vector2d& end : {edge.from, edge.to}) EXPECT_LT(offSides(end), 0.35);
-    EXPECT_NEAR((project(cameraOf(), edge.from_bearing) - edge.from).norm(), 0, 1e-6);
+    EXPECT_NEAR((project(cameraOfDrawing(), edge.from_bearing) - edge.from).norm(), 0, 1e-6);
   }
 }
 

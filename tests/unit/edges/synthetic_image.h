@@ -8,7 +8,20 @@
 #include <opencv2/core.hpp>
 #include <random>
 
+#include "geometry/camera.h"
+
 namespace edgeslam {
+
+// Of drawn images of 320 x 240 px: what is straight in space is straight in them.
+inline Camera cameraOfDrawing() {
+  Camera camera;
+  camera.width = 320;
+  camera.height = 240;
+  camera.fx = camera.fy = 300;
+  camera.cx = 159.5;
+  camera.cy = 119.5;
+  return camera;
+}
 
 // `signed_distance(x, y)` to the edge [px], positive on the bright side.
 template <typename SignedDistance>

@@ -9,6 +9,7 @@
 #include "map/map_check.h"
 #include "unit/adjustment/synthetic_scene.h"
 #include "unit/map/same_map.h"
+#include "unit/map/seen_line.h"
 
 namespace edgeslam::test {
 namespace {
@@ -71,24 +72,6 @@ Map madeMapOf(int keyframes) {
   for (int i = 0; i < 10; ++i) first.observations.push_back(observationOf(i, poseOf(0), landmark(i)));
   for (KeyframeId id = 1; id < keyframes; ++id) grow(id, poseOf(id), map);
   return map;
-}
-
-// A line that these keyframes see, hosted in the first of them.
-void addLine(LineId id, std::vector<KeyframeId> seen_in, Map& map) {
-  MapLine line;
-  line.id = id;
-  line.host = seen_in.front();
-  line.in_host = {{0.3, -0.4, 5}, Eigen::Vector3d(1, 2, 0.1 * static_cast<double>(id)).normalized()};
-  line.is_placed = true;
-  line.begin = -0.5;
-  line.end = 1;
-  line.seen_in = std::move(seen_in);
-  for (const KeyframeId keyframe : line.seen_in) {
-    const EdgeEnd from{{100, 100}, bearing(camera, {100, 100})}, to{{200, 300}, bearing(camera, {200, 300})};
-    map.keyframes[keyframe].straight_edges.push_back({id, from, to, 1e-3});
-  }
-  map.next_line = std::max(map.next_line, id + 1);
-  map.lines.emplace(id, line);
 }
 
 // The whole map in another world, exactly.
@@ -218,10 +201,10 @@ TEST_P(MapChangeScaled, AMoveOfTheWholeCopyMovesAllThatCameSince) {
   const Similarity move{scale, rotationExp({0.3, -0.5, 0.9}), {2, -1, 4}};
   Map before = madeMapOf(4), grown = madeMapOf(6);
   for (Map* map : {&before, &grown}) {
-    addLine(3, {0, 2}, *map);
-    addLine(4, {1, 3}, *map);
+    addSeenLine(camera, 3, {0, 2}, *map);
+    addSeenLine(camera, 4, {1, 3}, *map);
   }
-  addLine(7, {4, 5}, grown);
+  addSeenLine(camera, 7, {4, 5}, grown);
   // Line 4 got another host since.
   const SpaceLine in_world = inWorld(grown, grown.lines.at(4));
   grown.lines.at(4).host = 3;
@@ -256,8 +239,8 @@ TEST_P(MapChangeScaled, AMoveOfTheWholeCopyMovesAllThatCameSince) {
 
 TEST(MapChange, LinesAreWhereTheCorrectionPutThemOrGone) {
   Map before = madeMapOf(4);
-  addLine(3, {0, 2}, before);
-  addLine(4, {1, 3}, before);
+  addSeenLine(camera, 3, {0, 2}, before);
+  addSeenLine(camera, 4, {1, 3}, before);
   Map after = before;
   MapLine& moved = after.lines.at(3);
   moved.in_host = {{0.2, -0.3, 6}, Eigen::Vector3d(1, 1, 0).normalized()};

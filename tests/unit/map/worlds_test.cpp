@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/adjustment/synthetic_scene.h"
+#include "unit/map/seen_line.h"
+
 namespace edgeslam {
 namespace {
 
@@ -25,21 +28,9 @@ void addPoint(PointId id, KeyframeId host, std::vector<KeyframeId> seen_in, Map&
   map.points.emplace(id, point);
 }
 
-void addLine(LineId id, std::vector<KeyframeId> seen_in, Map& map) {
-  MapLine line;
-  line.id = id;
-  line.host = seen_in.front();
-  line.in_host = {{0.5, -1, 4}, Eigen::Vector3d(1, 2, -0.5).normalized()};
-  line.is_placed = true;
-  line.begin = -0.5;
-  line.end = 1.5;
-  line.seen_in = std::move(seen_in);
-  for (const KeyframeId keyframe : line.seen_in) map.keyframes[keyframe].straight_edges.push_back({id, {}, {}, 1e-3});
-  map.lines.emplace(id, line);
-}
-
 // Keyframes 0, 1 and 7 in world 0, to which the camera came back; 3 to 5 in world 2.
 Map twoWorlds() {
+  const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
   Map map;
   addKeyframe(0, 0, {0, 0, 0}, map);
   addKeyframe(1, 0, {1, 0, 0}, map);
@@ -48,8 +39,8 @@ Map twoWorlds() {
   addPoint(10, 0, {1, 7}, map);
   addPoint(20, 3, {4, 5}, map);
   addPoint(21, 5, {4}, map);
-  addLine(30, {0, 7}, map);
-  addLine(31, {4, 5}, map);
+  test::addSeenLine(camera, 30, {0, 7}, map);
+  test::addSeenLine(camera, 31, {4, 5}, map);
   return map;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "map/map_check.h"
+#include "unit/map/seen_line.h"
 #include "unit/mapping/landmark_walk.h"
 
 namespace edgeslam::test {
@@ -250,17 +251,8 @@ TEST(Culling, LinesStayWhileTheyAreSeen) {
   Walk walk = standing(20);
   CullingOptions options = withBounds(9, 1000);  // of which 0 to 3 and 15 to 19 stay
   options.other_views = 100;
-  const EdgeEnd from{{100, 100}, bearing(camera, {100, 100})}, to{{200, 300}, bearing(camera, {200, 300})};
-  for (const std::vector<KeyframeId>& seen_in : {std::vector<KeyframeId>{8, 9, 16}, std::vector<KeyframeId>{10, 11}}) {
-    MapLine line;
-    line.id = walk.map.next_line++;
-    line.host = seen_in.front();
-    line.in_host = {{0.3, -0.4, 5}, Eigen::Vector3d(1, 2, 0.1).normalized()};
-    line.is_placed = true;
-    line.seen_in = seen_in;
-    for (const KeyframeId id : seen_in) walk.map.keyframes[id].straight_edges.push_back({line.id, from, to, 1e-3});
-    walk.map.lines.emplace(line.id, line);
-  }
+  addSeenLine(camera, 0, {8, 9, 16}, walk.map);
+  addSeenLine(camera, 1, {10, 11}, walk.map);
   ASSERT_EQ(mapProblem(camera, walk.map), "");
   const SpaceLine was = inWorld(walk.map, walk.map.lines.at(0));
   cullKeyframes(options, walk.map, walk.candidates);

@@ -103,7 +103,7 @@ TEST(LineAssociation, AsksForTheSameBrighterSide) {
   EXPECT_EQ(linesSeenBy(map.keyframes[2]), (std::vector<LineId>{4, 5, 6, 7}));
 }
 
-// 0.02 m at 3 m are 2.7 px, which one line may be off; the other side of a seam is as near.
+// 0.015 m at 3 m are 2 px, which one line may be off; the other side of a seam is as near.
 TEST(LineAssociation, TakesNoneOfTwoThatAreAsNear) {
   std::vector<SpaceEdge> moved = panels;
   for (SpaceEdge& edge : moved) {

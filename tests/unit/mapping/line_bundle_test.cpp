@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/angles.h"
 #include "line_scene.h"
 #include "mapping/local_adjustment.h"
 
@@ -168,6 +169,29 @@ TEST(LineBundle, DissolvesALineThatItsViewsContradict) {
   for (const Keyframe& keyframe : map.keyframes) {
     for (const SeenEdge& edge : keyframe.straight_edges) EXPECT_NE(edge.line, 6);
   }
+}
+
+TEST(LineBundle, DissolvesTheEdgeOfADoorThatOpens) {
+  Random random(6);
+  EdgeSight sight;
+  sight.noise = 1;
+  Map map = mapOfPanels(sight, random, 8);
+  const double width = 0.6;
+  for (Keyframe& keyframe : map.keyframes) {
+    const double opened = radians(5) * std::max(0, keyframe.id - 3);
+    const Eigen::Vector3d moved(width * (1 - std::cos(opened)), 0, -width * std::sin(opened));
+    const Pose camera_T_world = keyframe.world_T_camera.inverse();
+    for (SeenEdge& edge : keyframe.straight_edges) {
+      if (edge.line != 0) continue;
+      edge.from = endAt(camera(), project(camera(), camera_T_world * (edges[0].from + moved)));
+      edge.to = endAt(camera(), project(camera(), camera_T_world * (edges[0].to + moved)));
+    }
+  }
+  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4, 5, 6, 7}, {0, 1}, map));
+  EXPECT_EQ(map.lines.count(0), 0U);
+  EXPECT_EQ(map.lines.size(), edges.size() - 1);  // which outvoted it
+  const Pose truth = at(0.08 * 7, 0.02, 0.03, {0.07, -0.14, 0});
+  EXPECT_LT((map.keyframes.back().world_T_camera.translation - truth.translation).norm(), 0.005);
 }
 
 TEST(LineBundle, SameBytesTwice) {

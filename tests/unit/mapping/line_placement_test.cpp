@@ -124,7 +124,6 @@ TEST(LinePlacement, RefusesALineThatSeemsBehindTheCamera) {
 }
 
 TEST(LinePlacement, ForgetsWhatWasNeverPlaced) {
-  Random random(1);
   Map map = unplaced({at(0, 0, 0), at(0.1, 0, 0)});
   for (KeyframeId id = 2; id < 6; ++id) {
     Keyframe keyframe;

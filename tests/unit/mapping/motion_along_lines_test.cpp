@@ -70,7 +70,7 @@ TEST(MotionAlongLines, IsWhatLinesAloneDoNotTell) {
   EXPECT_NEAR(errorAlong(lines_only), 0.2, 0.02);
 
   BundleProblem problem = problemOf(map, 0.2);
-  addMotionAlongLines(map, linesOf(map), sameIndex, problem);
+  addMotionAlongLines(camera(), map, linesOf(map), sameIndex, problem);
   ASSERT_TRUE(adjustBundle(camera(), problem, {30, 2}).usable);
   EXPECT_NEAR(errorAlong(problem), 0, 1e-4);
 }
@@ -80,7 +80,7 @@ TEST(MotionAlongLines, CountsALineOnce) {
   Map map = corridorMap(walk);
   const auto cost = [&map] {
     BundleProblem problem = problemOf(map, 0.2);
-    addMotionAlongLines(map, linesOf(map), sameIndex, problem);
+    addMotionAlongLines(camera(), map, linesOf(map), sameIndex, problem);
     problem.line_observations.clear();
     return adjustBundle(camera(), problem, {1, 1e6}).initial_cost;
   };
@@ -96,7 +96,7 @@ TEST(MotionAlongLines, IsOfConsecutiveKeyframesOnly) {
   const Map map = corridorMap(walk);
   const auto added = [&](const std::vector<LineId>& lines, const std::function<int(KeyframeId)>& camera_of) {
     BundleProblem problem = problemOf(map, 0);
-    addMotionAlongLines(map, lines, camera_of, problem);
+    addMotionAlongLines(camera(), map, lines, camera_of, problem);
     EXPECT_EQ(problem.points.size(), problem.observations.size());
     for (const BundleObservation& o : problem.observations) {
       EXPECT_EQ(o.camera, 2);
@@ -121,7 +121,7 @@ TEST(MotionAlongLines, IsOfTracksThatStayOnTheirLine) {
     if (seen.point == trackOf(0, 2)) seen.corner = true;
   }
   BundleProblem problem = problemOf(map, 0);
-  addMotionAlongLines(map, linesOf(map), sameIndex, problem);
+  addMotionAlongLines(camera(), map, linesOf(map), sameIndex, problem);
   EXPECT_EQ(problem.observations.size(), corridor.size() * tracks_on_edge - 3);
 }
 

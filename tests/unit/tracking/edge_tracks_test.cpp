@@ -5,22 +5,14 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "unit/edges/synthetic_image.h"
+
 namespace edgeslam {
 namespace {
 
 constexpr int left = 80, right = 240, top = 60, bottom = 180;  // of a bright square: its borders, in pixels' edges
 
-Camera squareCamera() {
-  Camera camera;
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = camera.fy = 300;
-  camera.cx = 159.5;
-  camera.cy = 119.5;
-  return camera;
-}
-
-const Camera camera = squareCamera();
+const Camera camera = cameraOfDrawing();
 
 Track trackAt(PointId id, float x, float y, float normal_x, float normal_y) {
   Track track;
