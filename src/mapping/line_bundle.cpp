@@ -44,6 +44,14 @@ void putOnLine(const Camera& camera, const SpaceLine& line, const Eigen::Matrix4
   point.inverse_depth_sigma = std::max(least_relative_sigma * point.inverse_depth, std::sqrt(variance));
 }
 
+// A point that was on a line which is none is where its host saw it.
+void putBackOnItsRay(const Camera& camera, const Keyframe& host, MapPoint& point) {
+  const PointObservation* seen = findObservation(host, point.id);
+  if (!seen) return;
+  const Eigen::Vector3d row_centre = rowPose(camera, host.twist, seen->measurement.pixel.y()).translation;
+  setPlace(row_centre, seen->bearing, point.inverse_depth, point.inverse_depth_sigma, point);
+}
+
 }  // namespace
 
 void addEnds(const SeenEdge& edge, int camera, int line, BundleProblem& problem) {
@@ -102,29 +110,35 @@ LinesInBundle addLines(const std::vector<KeyframeId>& keyframes, const Map& map,
   return added;
 }
 
-void readLines(const Camera& camera, const LineOptions& options, const BundleProblem& problem,
+bool readLines(const Camera& camera, const LineOptions& options, const BundleProblem& problem,
                const BundleResult& result, const LinesInBundle& in_bundle, Map& map) {
   std::vector<std::vector<double>> errors(in_bundle.lines.size());
   for (std::size_t k = 0; k < problem.line_observations.size(); ++k) {
     errors[static_cast<std::size_t>(problem.line_observations[k].line)].push_back(result.line_errors[k]);
   }
-  std::map<LineId, std::size_t> index;
+  std::map<LineId, std::size_t> kept;  // index in the problem
   for (std::size_t i = 0; i < in_bundle.lines.size(); ++i) {
-    MapLine& line = map.lines.at(in_bundle.lines[i]);
+    const LineId id = in_bundle.lines[i];
+    if (errors[i].empty() || upperMedian(std::move(errors[i])) > options.largest_error) {
+      dissolveLine(id, map);
+      continue;
+    }
+    MapLine& line = map.lines.at(id);
     setInWorld(problem.lines[i].line, map, line);
     renewExtent(camera, map, line);
-    index[line.id] = i;
+    kept[id] = i;
   }
   for (const auto& [id, line] : in_bundle.line_of_point) {
     MapPoint& point = map.points.at(id);
-    const std::size_t i = index.at(line);
-    putOnLine(camera, problem.lines[i].line, result.line_covariances[i], map.keyframes[point.host], point);
-  }
-  for (std::size_t i = 0; i < in_bundle.lines.size(); ++i) {
-    if (errors[i].empty() || upperMedian(std::move(errors[i])) > options.largest_error) {
-      dissolveLine(in_bundle.lines[i], map);
+    const Keyframe& host = map.keyframes[point.host];
+    const auto found = kept.find(line);
+    if (found == kept.end()) {
+      putBackOnItsRay(camera, host, point);
+    } else {
+      putOnLine(camera, problem.lines[found->second].line, result.line_covariances[found->second], host, point);
     }
   }
+  return kept.size() < in_bundle.lines.size();
 }
 
 }  // namespace edgeslam

@@ -33,8 +33,8 @@ LinesInBundle addLines(const std::vector<KeyframeId>& keyframes, const Map& map,
                        const std::function<int(KeyframeId)>& camera_of, BundleProblem& problem);
 
 // Lines and the points on them as they were found, keyframes' poses being there already. Lines that their views
-// contradict are dissolved.
-void readLines(const Camera& camera, const LineOptions& options, const BundleProblem& problem,
+// contradict are dissolved; true where there were any.
+bool readLines(const Camera& camera, const LineOptions& options, const BundleProblem& problem,
                const BundleResult& result, const LinesInBundle& in_bundle, Map& map);
 
 }  // namespace edgeslam

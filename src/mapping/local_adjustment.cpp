@@ -186,12 +186,14 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
     point.inverse_depth = problem.points[i].inverse_depth;
     if (result.depth_sigmas[i] > 0) point.inverse_depth_sigma = result.depth_sigmas[i];
   }
-  readLines(camera, options.lines, problem, result, lines, map);
+  const bool were_misled = readLines(camera, options.lines, problem, result, lines, map);
   std::vector<std::pair<PointId, KeyframeId>> outliers;
   for (std::size_t k = 0; k < observed.size(); ++k) {
     if (!(result.errors[k] < options.outlier)) outliers.push_back(observed[k]);
   }
   removeOutliers(outliers, used_points, options.largest_depth_sigma, map);
+  // What lines that are none have pulled away goes back without them.
+  if (were_misled) adjustKeyframes(camera, options, free, fixed, map, interrupted);
   return true;
 }
 
