@@ -20,6 +20,7 @@ struct LcmOptions {
   std::string state_channel = "SLAM_STATE";
   std::string status_channel = "SLAM_STATUS";
   std::string map_channel = "SLAM_MAP";
+  std::string map_lines_channel = "SLAM_MAP_LINES";
   std::string command_channel = "SLAM_COMMAND";
   std::string answer_channel = "SLAM_ANSWER";
   // of the robot's wheel odometry (pose_t), which is listened to; empty: none

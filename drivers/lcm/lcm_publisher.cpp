@@ -51,12 +51,13 @@ void LcmPublisher::status(const PublisherStatus& status) {
   rejoinAfterComeback();
 }
 
-void LcmPublisher::map(std::int64_t version, std::vector<PublishedPoint> points) {
-  map_ = finitePoints(std::move(points));
+void LcmPublisher::map(std::int64_t version, PublishedMap map) {
+  map_ = finiteMap(std::move(map));
   map_version_ = version;
   map_utime_ = monotonicUtime();
   next_part_ = 0;
-  parts_ = numberOfMapParts(map_.size());
+  line_parts_ = numberOfLineParts(map_.lines.size());
+  parts_ = line_parts_ + numberOfPointParts(map_.points.size());
 }
 
 std::optional<Command> LcmPublisher::nextCommand() {
@@ -83,9 +84,16 @@ LcmCounts LcmPublisher::counts() const {
   return {sender_.sent(), sender_.notSent(), commands_, receiver_ ? receiver_->ignored() : 0};
 }
 
+// Lines first: they are few, and are not kept waiting by a large map's points.
 void LcmPublisher::sendMapParts() {
   for (int i = 0; i < map_parts_at_once && next_part_ < parts_; ++i, ++next_part_) {
-    sender_.send(options_.map_channel, mapPart(map_, next_part_, map_version_, map_utime_, robot_.scale));
+    if (next_part_ < line_parts_) {
+      sender_.send(options_.map_lines_channel,
+                   linePart(map_.lines, next_part_, map_version_, map_utime_, robot_.scale));
+    } else {
+      sender_.send(options_.map_channel,
+                   pointPart(map_.points, next_part_ - line_parts_, map_version_, map_utime_, robot_.scale));
+    }
   }
 }
 

@@ -34,8 +34,9 @@ class LcmPublisher {
   // Each second: SLAM_STATUS; rates and latencies are over the frames since the call before.
   void status(const PublisherStatus& status);
 
-  // SLAM_MAP, its parts with the frames that follow. A map of which parts still wait is given up. Versions grow.
-  void map(std::int64_t version, std::vector<PublishedPoint> points);
+  // SLAM_MAP_LINES and SLAM_MAP, their parts with the frames that follow. A map of which parts still wait is given up.
+  // Versions grow.
+  void map(std::int64_t version, PublishedMap map);
 
   // The oldest command that was not handed out yet. Those that make no sense are answered here.
   std::optional<Command> nextCommand();
@@ -67,9 +68,9 @@ class LcmPublisher {
   FrameStatistics statistics_;
   std::int64_t states_ = 0, statuses_ = 0, commands_ = 0, comebacks_ = 0;
 
-  std::vector<PublishedPoint> map_;
+  PublishedMap map_;
   std::int64_t map_version_ = 0, map_utime_ = 0;
-  int next_part_ = 0, parts_ = 0;
+  int next_part_ = 0, line_parts_ = 0, parts_ = 0;  // those of the lines, and after them those of the points
 };
 
 }  // namespace edgeslam

@@ -5,39 +5,84 @@
 #include "drivers/lcm/messages.h"
 
 namespace edgeslam {
+namespace {
 
-std::vector<PublishedPoint> finitePoints(std::vector<PublishedPoint> points) {
-  const auto broken = [](const PublishedPoint& point) {
-    return !point.position.allFinite() || !point.direction.allFinite();
-  };
-  points.erase(std::remove_if(points.begin(), points.end(), broken), points.end());
-  return points;
+template <class Item, class IsBroken>
+void leaveOut(std::vector<Item>& items, const IsBroken& is_broken) {
+  items.erase(std::remove_if(items.begin(), items.end(), is_broken), items.end());
 }
 
-int numberOfMapParts(std::size_t points) {
-  constexpr std::size_t in_a_part = map_part_t::MOST_POINTS;
-  return std::max(1, static_cast<int>((points + in_a_part - 1) / in_a_part));
+int numberOfParts(std::size_t items, std::size_t in_a_part) {
+  return std::max(1, static_cast<int>((items + in_a_part - 1) / in_a_part));
 }
 
-map_part_t mapPart(const std::vector<PublishedPoint>& points, int part, std::int64_t version, std::int64_t utime,
-                   const ScaleState& scale) {
-  map_part_t message{};
+// From `first` on, before `last`.
+struct ItemRange {
+  std::size_t first = 0, last = 0;
+};
+
+ItemRange itemsOfPart(int part, std::size_t items, std::size_t in_a_part) {
+  const std::size_t first = std::min(items, static_cast<std::size_t>(part) * in_a_part);
+  return {first, std::min(items, first + in_a_part)};
+}
+
+// With the fields that parts of points and of lines share.
+template <class Message>
+Message emptyPart(int part, int parts, std::int64_t version, std::int64_t utime, const ScaleState& scale) {
+  Message message{};
   message.utime = utime;
   message.version = version;
   message.part = part;
-  message.parts = numberOfMapParts(points.size());
-  message.points_in_map = static_cast<std::int32_t>(points.size());
+  message.parts = parts;
   message.scale_state = scaleNumber(scale.kind);
-  const std::size_t first = static_cast<std::size_t>(part) * map_part_t::MOST_POINTS;
-  const std::size_t last = std::min(points.size(), first + map_part_t::MOST_POINTS);
+  return message;
+}
+
+void writeScaled(const Eigen::Vector3f& position, const ScaleState& scale, float (&to)[3]) {
+  const Eigen::Vector3f scaled = static_cast<float>(scale.metres_per_unit) * position;
+  std::copy_n(scaled.data(), 3, to);
+}
+
+}  // namespace
+
+PublishedMap finiteMap(PublishedMap map) {
+  leaveOut(map.points,
+           [](const PublishedPoint& point) { return !point.position.allFinite() || !point.direction.allFinite(); });
+  leaveOut(map.lines, [](const PublishedLine& line) { return !line.from.allFinite() || !line.to.allFinite(); });
+  return map;
+}
+
+int numberOfPointParts(std::size_t points) { return numberOfParts(points, map_part_t::MOST_POINTS); }
+
+int numberOfLineParts(std::size_t lines) { return numberOfParts(lines, map_lines_t::MOST_LINES); }
+
+map_part_t pointPart(const std::vector<PublishedPoint>& points, int part, std::int64_t version, std::int64_t utime,
+                     const ScaleState& scale) {
+  auto message = emptyPart<map_part_t>(part, numberOfPointParts(points.size()), version, utime, scale);
+  const auto [first, last] = itemsOfPart(part, points.size(), map_part_t::MOST_POINTS);
+  message.points_in_map = static_cast<std::int32_t>(points.size());
+  message.points = static_cast<std::int32_t>(last - first);
   for (std::size_t i = first; i < last; ++i) {
     const std::size_t at = i - first;
-    const Eigen::Vector3f position = static_cast<float>(scale.metres_per_unit) * points[i].position;
     message.id[at] = points[i].id;
-    std::copy_n(position.data(), 3, message.position[at]);
+    writeScaled(points[i].position, scale, message.position[at]);
     std::copy_n(points[i].direction.data(), 3, message.direction[at]);
   }
-  message.points = static_cast<std::int32_t>(last > first ? last - first : 0);
+  return message;
+}
+
+map_lines_t linePart(const std::vector<PublishedLine>& lines, int part, std::int64_t version, std::int64_t utime,
+                     const ScaleState& scale) {
+  auto message = emptyPart<map_lines_t>(part, numberOfLineParts(lines.size()), version, utime, scale);
+  const auto [first, last] = itemsOfPart(part, lines.size(), map_lines_t::MOST_LINES);
+  message.lines_in_map = static_cast<std::int32_t>(lines.size());
+  message.lines = static_cast<std::int32_t>(last - first);
+  for (std::size_t i = first; i < last; ++i) {
+    const std::size_t at = i - first;
+    message.id[at] = lines[i].id;
+    writeScaled(lines[i].from, scale, message.first_end[at]);
+    writeScaled(lines[i].to, scale, message.second_end[at]);
+  }
   return message;
 }
 

@@ -10,6 +10,7 @@
 #include "drivers/lcm/messages.h"
 #include "edgeslam/command_answer_t.hpp"
 #include "edgeslam/command_t.hpp"
+#include "edgeslam/map_lines_t.hpp"
 #include "edgeslam/map_part_t.hpp"
 #include "edgeslam/status_t.hpp"
 
@@ -86,9 +87,18 @@ std::string describe(const status_t& status) {
          (status.scale_reason.empty() ? "" : ", scale: " + messageText(status.scale_reason));
 }
 
+// What parts of points and of lines share.
+template <class Part>
+std::string partText(const Part& part) {
+  return line("version %lld, part %d of %d, ", static_cast<long long>(part.version), part.part + 1, part.parts);
+}
+
 std::string describe(const map_part_t& map) {
-  return line("version %lld, part %d of %d, %d of %d points", static_cast<long long>(map.version), map.part + 1,
-              map.parts, map.points, map.points_in_map);
+  return partText(map) + line("%d of %d points", map.points, map.points_in_map);
+}
+
+std::string describe(const map_lines_t& map) {
+  return partText(map) + line("%d of %d lines", map.lines, map.lines_in_map);
 }
 
 std::string commandText(int command) {
@@ -152,8 +162,8 @@ std::optional<std::int64_t> sequenceOf(const void* data, std::size_t bytes) {
 
 std::string describeMessage(const void* data, std::size_t bytes) {
   std::string text;
-  if (describeAsOneOf<pose_t, state_t, update_t, status_t, map_part_t, command_t, command_answer_t>(data, bytes,
-                                                                                                    text)) {
+  if (describeAsOneOf<pose_t, state_t, update_t, status_t, map_part_t, map_lines_t, command_t, command_answer_t>(
+          data, bytes, text)) {
     return text;
   }
   return line("%zu bytes of a type that is not ours", bytes);

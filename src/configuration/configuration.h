@@ -19,7 +19,7 @@ namespace edgeslam {
 // How `edgeslam run` publishes, and what it keeps on the disk.
 struct ServiceOptions {
   LcmOptions lcm;
-  double map_interval_s = 5;      // SLAM_MAP at most so often where the map changed; 0: on request only
+  double map_interval_s = 5;      // the map is sent at most so often where it changed; 0: on request only
   std::string map_file;           // written at the end, on SIGHUP and on command; empty: nowhere
   bool goes_on_with_map = false;  // at the start, with the map in the file, where there is one
   std::string recordings_folder;  // for a folder a recording; empty: no command begins one

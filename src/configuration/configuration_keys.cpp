@@ -106,6 +106,7 @@ Keys serviceKeys(ServiceOptions& service, RecordingSpace& space) {
       text("lcm.state_channel", &lcm.state_channel, ""),
       text("lcm.status_channel", &lcm.status_channel, ""),
       text("lcm.map_channel", &lcm.map_channel, ""),
+      text("lcm.map_lines_channel", &lcm.map_lines_channel, ""),
       text("lcm.command_channel", &lcm.command_channel, ""),
       text("lcm.answer_channel", &lcm.answer_channel, ""),
       {"lcm.map_interval_s", &service.map_interval_s, "s", 0, 3600,

@@ -14,15 +14,6 @@ namespace {
 
 constexpr auto shown_interval = std::chrono::seconds(2);
 
-std::vector<PublishedPoint> publishedPoints(const Map& map, int world, const Camera& camera) {
-  std::vector<PublishedPoint> points;
-  for (const MapPointRecord& record : mapPointRecords(map, camera)) {
-    if (record.world != world) continue;
-    points.push_back({record.id, record.position.cast<float>(), record.edge_direction.cast<float>()});
-  }
-  return points;
-}
-
 }  // namespace
 
 MapPublisher::MapPublisher(const Camera& camera, double interval_s, LcmPublisher& publisher, Viewer* viewer,
@@ -80,10 +71,23 @@ void MapPublisher::mapCame(const std::shared_ptr<const Map>& map) {
   if (viewer_) viewer_->map(map, world);
   if (!std::exchange(is_wanted_, false)) return;
   work_.begin([this, map, world, camera = camera_, version = ++version_]() -> BackgroundWork::Completion {
-    return [this, version, points = publishedPoints(*map, world, camera)]() mutable {
-      publisher_.map(version, std::move(points));
+    return [this, version, published = publishedMap(*map, world, camera)]() mutable {
+      publisher_.map(version, std::move(published));
     };
   });
+}
+
+PublishedMap publishedMap(const Map& map, int world, const Camera& camera) {
+  PublishedMap published;
+  for (const MapPointRecord& point : mapPointRecords(map, camera)) {
+    if (point.world != world) continue;
+    published.points.push_back({point.id, point.position.cast<float>(), point.edge_direction.cast<float>()});
+  }
+  for (const MapLineRecord& line : mapLineRecords(map)) {
+    if (line.world != world) continue;
+    published.lines.push_back({line.id, line.from.cast<float>(), line.to.cast<float>()});
+  }
+  return published;
 }
 
 int largestWorld(const Map& map) {

@@ -1,4 +1,5 @@
-// The map on its way out: as SLAM_MAP, on request and where it changed, and to the viewer while someone looks on.
+// The map on its way out: as SLAM_MAP and SLAM_MAP_LINES, on request and where it changed, and to the viewer while
+// someone looks on.
 #pragma once
 
 #include <chrono>
@@ -18,16 +19,16 @@ class MapPublisher {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `interval_s`: SLAM_MAP at most so often where the map changed; 0: on request only. `viewer` may be null. What is
+  // `interval_s`: the map is sent at most so often where it changed; 0: on request only. `viewer` may be null. What is
   // referred to outlives it; work that was begun may outlive this object.
   MapPublisher(const Camera& camera, double interval_s, LcmPublisher& publisher, Viewer* viewer, BackgroundWork& work);
 
   void begin(LiveRun& run);
   void end() { is_wanted_ = false; }
 
-  // Points and keyframes that go out are those of this world; -1: no pose yet, of the one with most keyframes.
+  // Points, lines and keyframes that go out are those of this world; -1: no pose yet, of the one with most keyframes.
   void enterWorld(int world);
-  // SLAM_MAP follows as soon as the map is there.
+  // SLAM_MAP and SLAM_MAP_LINES follow as soon as the map is there.
   void ask();
   void everySecond(Clock::time_point now);
   // One that the run was asked for, by whomever.
@@ -45,12 +46,15 @@ class MapPublisher {
   LiveRun* run_ = nullptr;  // from begin() on
 
   int world_ = -1;
-  bool is_wanted_ = false;  // for SLAM_MAP
+  bool is_wanted_ = false;  // over LCM
   Clock::time_point next_time_{};
   std::int64_t published_changes_ = 0, version_ = 0;
   Clock::time_point next_shown_time_{};
   std::int64_t shown_changes_ = -1;  // of the map that the viewer has; -1: it has none
 };
+
+// The points and lines of one world.
+PublishedMap publishedMap(const Map& map, int world, const Camera& camera);
 
 // The world of a map with most keyframes, of several the earliest; 0 for an empty map.
 int largestWorld(const Map& map);

@@ -13,7 +13,7 @@ namespace edgeslam {
 
 struct PublishingSetup {
   LcmOptions lcm;
-  double map_interval_s = 5;  // SLAM_MAP at most so often where the map changed; 0: on request only
+  double map_interval_s = 5;  // the map is sent at most so often where it changed; 0: on request only
   Pose body_T_camera;         // translation [m]
   Camera camera;
   ScaleOptions scale;

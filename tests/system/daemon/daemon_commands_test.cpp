@@ -71,17 +71,26 @@ TEST_F(DaemonCommands, TheMapIsSentAndSavedOnCommand) {
   EXPECT_GT(std::filesystem::file_size(map), 10000U);
 
   EXPECT_TRUE(robot_->heard().map_parts.empty()) << "on request only";
+  EXPECT_TRUE(robot_->heard().line_parts.empty()) << "on request only";
   EXPECT_TRUE(robot_->ask(command_t::SEND_MAP).accepted);
   ASSERT_TRUE(robot_->hears([](const Heard& heard) {
     return !heard.map_parts.empty() && heard.map_parts.back().part + 1 == heard.map_parts.back().parts;
   }));
   const Heard heard = robot_->heard();
-  std::int64_t points = 0;
+  const map_part_t& last = heard.map_parts.back();
+  std::int64_t points = 0, lines = 0;
   for (const map_part_t& part : heard.map_parts) {
-    if (part.version == heard.map_parts.back().version) points += part.points;
+    if (part.version == last.version) points += part.points;
   }
-  EXPECT_EQ(points, heard.map_parts.back().points_in_map);
+  EXPECT_EQ(points, last.points_in_map);
   EXPECT_GT(points, 100);
+  ASSERT_FALSE(heard.line_parts.empty());
+  for (const map_lines_t& part : heard.line_parts) {
+    if (part.version == last.version) lines += part.lines;
+  }
+  EXPECT_EQ(heard.line_parts.back().version, last.version);
+  EXPECT_EQ(heard.line_parts.back().utime, last.utime);
+  EXPECT_EQ(lines, heard.line_parts.back().lines_in_map);
 }
 
 TEST_F(DaemonCommands, WhatIsNotConfiguredIsRefusedWithTheKeyToSet) {

@@ -30,6 +30,8 @@ void expectAllFrames(const Heard& heard, std::int64_t frames) {
   EXPECT_GT(last.keyframes, 3);
   EXPECT_GT(last.points, 100);
   EXPECT_FALSE(heard.map_parts.empty());
+  ASSERT_FALSE(heard.line_parts.empty());
+  EXPECT_GT(heard.line_parts.back().lines_in_map, 0);
 }
 
 TEST_F(DaemonTest, EveryFrameIsPublishedUntilTheRecordingEndsAndTheMapIsWritten) {

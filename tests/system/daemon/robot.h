@@ -14,6 +14,7 @@
 
 #include "edgeslam/command_answer_t.hpp"
 #include "edgeslam/command_t.hpp"
+#include "edgeslam/map_lines_t.hpp"
 #include "edgeslam/map_part_t.hpp"
 #include "edgeslam/pose_t.hpp"
 #include "edgeslam/state_t.hpp"
@@ -30,6 +31,7 @@ struct Heard {
   std::vector<pose_t> poses;
   std::vector<update_t> updates;
   std::vector<map_part_t> map_parts;
+  std::vector<map_lines_t> line_parts;
   std::map<std::int64_t, command_answer_t> answers;  // by the command's number
 };
 
@@ -41,6 +43,7 @@ class Robot {
     hear("SLAM_POSE", &Robot::take<pose_t, &Heard::poses>);
     hear("SLAM_REL_ODOMETRY", &Robot::take<update_t, &Heard::updates>);
     hear("SLAM_MAP", &Robot::take<map_part_t, &Heard::map_parts>);
+    hear("SLAM_MAP_LINES", &Robot::take<map_lines_t, &Heard::line_parts>);
     hear("SLAM_ANSWER", &Robot::takeAnswer);
     thread_ = std::thread([this] {
       while (!stopping_) lcm_.handleTimeout(50);

@@ -8,6 +8,7 @@
 #include "drivers/lcm/messages.h"
 #include "edgeslam/command_answer_t.hpp"
 #include "edgeslam/command_t.hpp"
+#include "edgeslam/map_lines_t.hpp"
 #include "edgeslam/map_part_t.hpp"
 #include "edgeslam/status_t.hpp"
 #include "unit/lcm/made_frames.h"
@@ -36,8 +37,8 @@ std::vector<std::vector<std::uint8_t>> oneOfEach() {
   const PublishedFrame frame = frameMessages(measuredFrame(3, Pose()), {}, std::nullopt, 3, 0);
   status_t status{};
   status.reason = "x";
-  return {encoded(*frame.pose),  encoded(frame.state), encoded(frame.update),      encoded(status),
-          encoded(map_part_t{}), encoded(command_t{}), encoded(command_answer_t{})};
+  return {encoded(*frame.pose),  encoded(frame.state),   encoded(frame.update), encoded(status),
+          encoded(map_part_t{}), encoded(map_lines_t{}), encoded(command_t{}),  encoded(command_answer_t{})};
 }
 
 TEST(ListenText, AStateIsTold) {
@@ -48,6 +49,15 @@ TEST(ListenText, AStateIsTold) {
   const std::string tracked = describe(encoded(stateOf(measuredFrame(3, {{1, 0, 0, 0}, {1, 2, 3}}), 9)));
   EXPECT_NE(tracked.find("tracking, world 0, at 1.000 2.000 3.000"), std::string::npos) << tracked;
   EXPECT_NE(tracked.find("scale unknown"), std::string::npos) << tracked;
+}
+
+TEST(ListenText, PartsOfAMapAreTold) {
+  map_part_t points{};
+  points.version = 3, points.part = 1, points.parts = 2, points.points = 4, points.points_in_map = 44;
+  EXPECT_EQ(describe(encoded(points)), "version 3, part 2 of 2, 4 of 44 points");
+  map_lines_t lines{};
+  lines.version = 3, lines.parts = 1, lines.lines = lines.lines_in_map = 7;
+  EXPECT_EQ(describe(encoded(lines)), "version 3, part 1 of 1, 7 of 7 lines");
 }
 
 TEST(ListenText, EveryTypeIsKnownByItsHash) {

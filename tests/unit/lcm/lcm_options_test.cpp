@@ -67,6 +67,9 @@ TEST(LcmOptions, ChannelsArePlainNamesAndDiffer) {
   expectInputError([&] { checkChannels(options); }, "1 to 63");
   options.pose_channel = options.state_channel;
   expectInputError([&] { checkChannels(options); }, "'SLAM_STATE' is named twice");
+  options.pose_channel = "SLAM_POSE";
+  options.map_lines_channel = options.map_channel;
+  expectInputError([&] { checkChannels(options); }, "'SLAM_MAP' is named twice");
 }
 
 }  // namespace

@@ -87,25 +87,61 @@ TEST(LcmPublisher, AMapBegunAnewHasNoMotionFromTheOldOne) {
 TEST(LcmPublisher, AMapGoesOutInPiecesBetweenTheFrames) {
   const TemporaryFolder folder;
   const std::string log = folder.path("log");
-  const std::vector<PublishedPoint> points(1000);
+  const PublishedMap map{std::vector<PublishedPoint>(1000), std::vector<PublishedLine>(100)};
   {
     LcmPublisher publisher(toFile(log), Pose());
-    publisher.map(1, points);  // given up for the next
+    publisher.map(1, map);  // given up for the next
     publisher.frame(measuredFrame(0, Pose()));
-    publisher.map(2, points);
+    publisher.map(2, map);
     for (int i = 1; i < 10; ++i) publisher.frame(measuredFrame(i, Pose()));
   }
-  int parts = 0, since_state = 0;
+  int point_parts = 0, line_parts = 0, since_state = 0;
   for (const LoggedMessage& message : readLog(log)) {
     if (message.channel == "SLAM_STATE") since_state = 0;
-    if (message.channel != "SLAM_MAP") continue;
-    const auto part = message.as<map_part_t>();
-    if (part.version == 2) {
-      EXPECT_EQ(part.part, parts++);
+    if (message.channel == "SLAM_MAP") {
+      const auto part = message.as<map_part_t>();
+      EXPECT_LE(++since_state, 4);
+      if (part.version == 1) continue;
+      EXPECT_EQ(part.version, 2);
+      EXPECT_EQ(line_parts, 3) << "lines go out first";
+      EXPECT_EQ(part.part, point_parts++);
     }
-    EXPECT_LE(++since_state, 4);
+    if (message.channel == "SLAM_MAP_LINES") {
+      const auto part = message.as<map_lines_t>();
+      EXPECT_LE(++since_state, 4);
+      if (part.version == 1) continue;
+      EXPECT_EQ(part.version, 2);
+      EXPECT_EQ(part.part, line_parts++);
+    }
   }
-  EXPECT_EQ(parts, 25);
+  EXPECT_EQ(point_parts, 25);
+  EXPECT_EQ(line_parts, 3);
+}
+
+TEST(LcmPublisher, AMapWithoutAnythingIsToldToo) {
+  const TemporaryFolder folder;
+  const std::string log = folder.path("log");
+  {
+    LcmOptions options = toFile(log);
+    options.map_lines_channel = "LINES";
+    LcmPublisher publisher(options, Pose());
+    publisher.frame(measuredFrame(0, Pose()));
+    publisher.map(1, {});
+    publisher.frame(measuredFrame(1, Pose()));
+    publisher.frame(measuredFrame(2, Pose()));
+  }
+  std::map<std::string, int> channels;
+  for (const LoggedMessage& message : readLog(log)) {
+    ++channels[message.channel];
+    if (message.channel == "SLAM_MAP") {
+      EXPECT_EQ(message.as<map_part_t>().points_in_map, 0);
+    }
+    if (message.channel == "LINES") {
+      EXPECT_EQ(message.as<map_lines_t>().lines_in_map, 0);
+    }
+  }
+  EXPECT_EQ(channels["SLAM_MAP"], 1);
+  EXPECT_EQ(channels["LINES"], 1);
 }
 
 TEST(LcmPublisher, AStatusTellsWhatWasSent) {
