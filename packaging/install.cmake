@@ -1,4 +1,4 @@
-# Where things go on a robot, by package: the program (edgeslam), the library (libedgeslam1), what programs are built with
+# Where things go on a robot, by package: the program (edgeslam), the library (libedgeslam2), what programs are built with
 # (libedgeslam-dev). The places are systemd's and Debian's; the service expects /usr/bin. Its user is made by sysusers.d.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -16,7 +16,7 @@ install(FILES packaging/edgeslam.bash-completion DESTINATION ${CMAKE_INSTALL_DAT
   RENAME edgeslam COMPONENT edgeslam)
 
 install(TARGETS edgeslam_shared EXPORT edgeslam
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libedgeslam1 NAMELINK_COMPONENT libedgeslam-dev)
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libedgeslam2 NAMELINK_COMPONENT libedgeslam-dev)
 install(DIRECTORY include/edgeslam DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT libedgeslam-dev)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libedgeslam-dev COMPONENT libedgeslam-dev)
 
@@ -32,7 +32,7 @@ set(changes ${CMAKE_BINARY_DIR}/changelog.gz)
 execute_process(COMMAND ${GZIP} -9nc ${CMAKE_SOURCE_DIR}/packaging/debian/changelog OUTPUT_FILE ${changes}
   COMMAND_ERROR_IS_FATAL ANY)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS packaging/debian/changelog)
-foreach(package edgeslam libedgeslam1 libedgeslam-dev)
+foreach(package edgeslam libedgeslam2 libedgeslam-dev)
   install(FILES packaging/debian/copyright ${changes} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
     COMPONENT ${package})
 endforeach()

@@ -12,14 +12,14 @@ set(CPACK_PACKAGE_VENDOR "Edge SLAM")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 if(EDGESLAM_DEBUG_SYMBOLS)
   set(CPACK_DEBIAN_EDGESLAM_DEBUGINFO_PACKAGE ON)  # strips, too
-  set(CPACK_DEBIAN_LIBEDGESLAM1_DEBUGINFO_PACKAGE ON)
+  set(CPACK_DEBIAN_LIBEDGESLAM2_DEBUGINFO_PACKAGE ON)
 else()
   set(CPACK_STRIP_FILES ON)
 endif()
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
   WORLD_READ WORLD_EXECUTE)
-set(CPACK_COMPONENTS_ALL edgeslam libedgeslam1 libedgeslam-dev)
+set(CPACK_COMPONENTS_ALL edgeslam libedgeslam2 libedgeslam-dev)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -57,15 +57,15 @@ set(CPACK_DEBIAN_EDGESLAM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/de
   ${CMAKE_SOURCE_DIR}/packaging/debian/postinst ${CMAKE_SOURCE_DIR}/packaging/debian/prerm
   ${CMAKE_SOURCE_DIR}/packaging/debian/postrm)
 
-set(CPACK_COMPONENT_LIBEDGESLAM1_DESCRIPTION "monocular SLAM on image edges, shared library
+set(CPACK_COMPONENT_LIBEDGESLAM2_DESCRIPTION "monocular SLAM on image edges, shared library
 Edge SLAM tells a robot with one camera where it is, at every frame, also in
 front of bare walls: it follows points on image edges, builds a 3D map of them,
 and gives a pose with its uncertainty.
 
 This package has the library that programs use.")
-set(CPACK_DEBIAN_LIBEDGESLAM1_PACKAGE_NAME libedgeslam1)
-set(CPACK_DEBIAN_LIBEDGESLAM1_PACKAGE_SECTION libs)
-set(CPACK_DEBIAN_LIBEDGESLAM1_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/triggers)
+set(CPACK_DEBIAN_LIBEDGESLAM2_PACKAGE_NAME libedgeslam2)
+set(CPACK_DEBIAN_LIBEDGESLAM2_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBEDGESLAM2_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/triggers)
 
 set(CPACK_COMPONENT_LIBEDGESLAM-DEV_DESCRIPTION "monocular SLAM on image edges, development files
 Edge SLAM tells a robot with one camera where it is, at every frame, also in
@@ -75,7 +75,7 @@ and gives a pose with its uncertainty.
 This package has the headers and the CMake package to build programs with.")
 set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_NAME libedgeslam-dev)
 set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_DEPENDS "libedgeslam1 (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_DEPENDS "libedgeslam2 (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_LIBEDGESLAM-DEV_PACKAGE_SHLIBDEPS OFF)
 
 include(CPack)

@@ -16,31 +16,35 @@ Pose cameraOnBody(const RobotSetup& robot) {
   return body_T_camera;
 }
 
-bool isKnown(const Matrix6d& covariance) { return covariance.allFinite() && covariance.diagonal().minCoeff() > 0; }
-
-}  // namespace
-
-Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot) {
-  const Pose body_T_camera = cameraOnBody(robot);
-  return body_T_camera * scaled(world_T_camera, robot.scale) * body_T_camera.inverse();
-}
-
-Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& robot) {
-  if (!isKnown(covariance_camera)) return unknown_variance * Matrix6d::Identity();
-  Matrix6d covariance = covariance_camera;
+Matrix6d onBody(Matrix6d covariance, const RobotSetup& robot) {
   covariance.topRows<3>() *= robot.scale.metres_per_unit;
   covariance.leftCols<3>() *= robot.scale.metres_per_unit;
   return carriedCovariance(covariance, cameraOnBody(robot).inverse());
 }
 
+Pose onBody(const Pose& motion_of_camera, const RobotSetup& robot) {
+  const Pose body_T_camera = cameraOnBody(robot);
+  return body_T_camera * scaled(motion_of_camera, robot.scale) * body_T_camera.inverse();
+}
+
+bool isKnown(const Matrix6d& covariance) { return covariance.allFinite() && covariance.diagonal().minCoeff() > 0; }
+
+}  // namespace
+
+Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot) { return onBody(world_T_camera, robot); }
+
+Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& robot) {
+  if (!isKnown(covariance_camera)) return unknown_variance * Matrix6d::Identity();
+  return onBody(covariance_camera, robot);
+}
+
 std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredPose& now, const RobotSetup& robot) {
   const double seconds = 1e-9 * static_cast<double>(now.time_ns - before.time_ns);
   if (before.world != now.world || !(seconds > 0 && seconds <= longest_motion_s)) return std::nullopt;
-  const Pose body_T_camera = cameraOnBody(robot);
   BodyMotion motion;
   motion.from_ns = before.time_ns;
   motion.seconds = seconds;
-  motion.before_T_now = body_T_camera * scaled(cameraMotion(before, now), robot.scale) * body_T_camera.inverse();
+  motion.before_T_now = onBody(cameraMotion(before, now), robot);
   if (isKnown(before.covariance_camera) && isKnown(now.covariance_camera)) {
     motion.covariance = carriedCovariance(bodyCovariance(before.covariance_camera, robot), motion.before_T_now) +
                         bodyCovariance(now.covariance_camera, robot);
@@ -48,6 +52,13 @@ std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredP
     motion.covariance = unknown_variance * Matrix6d::Identity();
   }
   return motion;
+}
+
+MotionStep bodyStep(const MotionStep& of_camera, const RobotSetup& robot) {
+  MotionStep step = of_camera;
+  step.before_T_now = onBody(of_camera.before_T_now, robot);
+  step.covariance = onBody(of_camera.covariance, robot);
+  return step;
 }
 
 }  // namespace edgeslam

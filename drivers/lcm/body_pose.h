@@ -7,6 +7,7 @@
 
 #include "scale/measured_pose.h"
 #include "scale/scale_state.h"
+#include "visual_odometry/motion_step.h"
 
 namespace edgeslam {
 
@@ -36,5 +37,8 @@ Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& rob
 // None between two worlds, or where the time between is not over 0 or over longest_motion_s. By cameraMotion(), so that
 // a correction of the map in between is no motion where the keyframe is the same.
 std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredPose& now, const RobotSetup& robot);
+
+// The body's motion for the camera's, and its covariance likewise.
+MotionStep bodyStep(const MotionStep& of_camera, const RobotSetup& robot);
 
 }  // namespace edgeslam

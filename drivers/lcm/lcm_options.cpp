@@ -86,9 +86,10 @@ std::string effectiveUrl(const LcmOptions& options) {
 
 void checkChannels(const LcmOptions& options) {
   std::set<std::string> names;
-  std::vector<std::string> channels{options.pose_channel,    options.odometry_channel, options.state_channel,
-                                    options.status_channel,  options.map_channel,      options.map_lines_channel,
-                                    options.command_channel, options.answer_channel};
+  std::vector<std::string> channels{options.pose_channel,       options.odometry_channel,  options.odom_channel,
+                                    options.correction_channel, options.state_channel,     options.status_channel,
+                                    options.map_channel,        options.map_lines_channel, options.command_channel,
+                                    options.answer_channel};
   if (!options.wheels_channel.empty()) channels.push_back(options.wheels_channel);
   for (const std::string& name : channels) {
     const bool plain = std::all_of(name.begin(), name.end(), [](char c) {

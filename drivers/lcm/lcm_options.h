@@ -17,6 +17,8 @@ struct LcmOptions {
   int real_time_priority = 0;
   std::string pose_channel = "SLAM_POSE";
   std::string odometry_channel = "SLAM_REL_ODOMETRY";
+  std::string odom_channel = "SLAM_ODOMETRY";
+  std::string correction_channel = "SLAM_CORRECTION";
   std::string state_channel = "SLAM_STATE";
   std::string status_channel = "SLAM_STATUS";
   std::string map_channel = "SLAM_MAP";

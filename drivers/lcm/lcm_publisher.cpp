@@ -36,6 +36,10 @@ void LcmPublisher::frame(const FrameResult& result) {
   sender_.send(options_.state_channel, messages.state);  // first: it tells the world that the pose is in
   if (messages.pose) sender_.send(options_.pose_channel, *messages.pose);
   sender_.send(options_.odometry_channel, messages.update);
+  if (const std::optional<OdometryMessages> odometry = body_odometry_.next(result, robot_)) {
+    sender_.send(options_.correction_channel, odometry->correction);  // first: it tells of resets
+    sender_.send(options_.odom_channel, odometry->odometry);
+  }
   if (result.state == TrackingState::initialising) before_.reset();  // the next pose is in another map
   if (const std::optional<MeasuredPose> measured = measuredPose(result)) before_ = measured;
   statistics_.add(result);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/lcm/body_odometry.h"
 #include "drivers/lcm/command_receiver.h"
 #include "drivers/lcm/lcm_options.h"
 #include "drivers/lcm/lcm_sender.h"
@@ -27,8 +28,8 @@ class LcmPublisher {
   void setScale(const ScaleState& scale) { robot_.scale = scale; }
   const ScaleState& scale() const { return robot_.scale; }
 
-  // Each frame, in order: SLAM_STATE and SLAM_REL_ODOMETRY, and SLAM_POSE where the pose was measured; some of a
-  // waiting map's parts, too.
+  // Each frame, in order: SLAM_STATE and SLAM_REL_ODOMETRY, SLAM_POSE where the pose was measured, SLAM_CORRECTION and
+  // SLAM_ODOMETRY where the motion to it is known; some of a waiting map's parts, too.
   void frame(const FrameResult& result);
 
   // Each second: SLAM_STATUS; rates and latencies are over the frames since the call before.
@@ -65,6 +66,7 @@ class LcmPublisher {
   std::unique_ptr<CommandReceiver> receiver_;  // null where the URL cannot receive
   std::unique_ptr<OdometryReceiver> wheels_;   // likewise, and where no channel is named
   std::optional<MeasuredPose> before_;
+  BodyOdometry body_odometry_;
   FrameStatistics statistics_;
   std::int64_t states_ = 0, statuses_ = 0, commands_ = 0, comebacks_ = 0;
 

@@ -3,26 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/lcm/message_fields.h"
+
 namespace edgeslam {
 namespace {
 
 constexpr std::size_t longest_text = 200;
-
-void put(const Eigen::Vector3d& from, double (&to)[3]) { std::copy_n(from.data(), 3, to); }
-
-void put(const Eigen::Quaterniond& from, double (&to)[4]) {
-  const double sign = from.w() < 0 ? -1 : 1;
-  to[0] = sign * from.w();
-  to[1] = sign * from.x();
-  to[2] = sign * from.y();
-  to[3] = sign * from.z();
-}
-
-void put(const Matrix6d& from, double (&to)[6][6]) {
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) to[row][column] = from(row, column);
-  }
-}
 
 struct BodyTwist {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();       // body frame

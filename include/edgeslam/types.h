@@ -50,6 +50,13 @@ struct PosedFrame {
   CameraPose pose;
   // Of a small motion [translation; rotation vector [rad]] of the camera in its own frame, row by row.
   std::array<double, 36> covariance{};
+  // Where the camera is in a frame that never jumps: it begins at the first measured pose and goes on by motion alone,
+  // through corrections of the map and short gaps; it drifts. Where `odometry_resets` is higher than before, the motion
+  // in between is not known.
+  bool has_odometry = false;
+  CameraPose odometry;                           // map units
+  std::array<double, 36> odometry_covariance{};  // as `covariance`, since the first pose
+  int odometry_resets = 0;
   int tracked_points = 0;  // points followed in the image
   int mapped_points = 0;   // of these with depth, and used for the pose
   double latency_ms = -1;  // from handing the frame over to its pose; negative: not known

@@ -10,6 +10,7 @@
 #include "drivers/lcm/messages.h"
 #include "edgeslam/command_answer_t.hpp"
 #include "edgeslam/command_t.hpp"
+#include "edgeslam/correction_t.hpp"
 #include "edgeslam/map_lines_t.hpp"
 #include "edgeslam/map_part_t.hpp"
 #include "edgeslam/status_t.hpp"
@@ -73,6 +74,16 @@ std::string describe(const update_t& update) {
   return line("t %.6f s, %s, in %.1f ms moved %.4f %.4f %.4f", seconds(update.timestamp), status.c_str(),
               1e3 * (seconds(update.timestamp) - seconds(update.prev_timestamp)), update.translation[0],
               update.translation[1], update.translation[2]);
+}
+
+std::string describe(const correction_t& correction) {
+  const std::string why =
+      nameOf<7>({"start", "map adjusted", "map corrected", "found again", "measured again", "another world", "scale"},
+                correction.change);
+  return line("t %.6f s, world %d, ", seconds(correction.utime), correction.world) +
+         poseText(correction.translation, correction.rotation) +
+         line(", changed at %.6f s: %s, resets %d%s", seconds(correction.change_utime), why.c_str(),
+              correction.reset_count, correction.is_measured ? "" : ", not measured");
 }
 
 std::string describe(const status_t& status) {
@@ -162,11 +173,9 @@ std::optional<std::int64_t> sequenceOf(const void* data, std::size_t bytes) {
 
 std::string describeMessage(const void* data, std::size_t bytes) {
   std::string text;
-  if (describeAsOneOf<pose_t, state_t, update_t, status_t, map_part_t, map_lines_t, command_t, command_answer_t>(
-          data, bytes, text)) {
-    return text;
-  }
-  return line("%zu bytes of a type that is not ours", bytes);
+  const bool is_known = describeAsOneOf<pose_t, state_t, update_t, correction_t, status_t, map_part_t, map_lines_t,
+                                        command_t, command_answer_t>(data, bytes, text);
+  return is_known ? text : line("%zu bytes of a type that is not ours", bytes);
 }
 
 std::string GapWatch::add(const std::string& channel, const void* data, std::size_t bytes) {

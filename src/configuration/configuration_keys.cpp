@@ -103,6 +103,8 @@ Keys serviceKeys(ServiceOptions& service, RecordingSpace& space) {
        "reach of the messages: 0 this computer, 1 the local network; -1: as the URL says"},
       text("lcm.pose_channel", &lcm.pose_channel, "names of the channels"),
       text("lcm.odometry_channel", &lcm.odometry_channel, ""),
+      text("lcm.odom_channel", &lcm.odom_channel, ""),
+      text("lcm.correction_channel", &lcm.correction_channel, ""),
       text("lcm.state_channel", &lcm.state_channel, ""),
       text("lcm.status_channel", &lcm.status_channel, ""),
       text("lcm.map_channel", &lcm.map_channel, ""),

@@ -27,6 +27,12 @@ SlamState publicState(TrackingState state) {
   return SlamState::lost;
 }
 
+std::array<double, 36> publicCovariance(const Matrix6d& covariance) {
+  std::array<double, 36> values{};
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(values.data()) = covariance;
+  return values;
+}
+
 }  // namespace
 
 Configuration libraryConfiguration(const std::string& calibration_file, const std::string& configuration_file) {
@@ -69,7 +75,7 @@ CameraPose publicPose(const Pose& world_T_camera) {
 // A pose whose world is not told is in the first.
 int publicWorld(int world) { return std::max(0, world); }
 
-PosedFrame publicFrame(const FrameResult& result) {
+PosedFrame publicFrame(const FrameResult& result, const std::optional<OdometryFrame>& odometry) {
   PosedFrame frame;
   frame.index = result.index;
   frame.time_ns = result.time_ns;
@@ -79,7 +85,13 @@ PosedFrame publicFrame(const FrameResult& result) {
   if (result.has_pose) {
     frame.world = publicWorld(result.world);
     frame.pose = publicPose(result.world_T_camera);
-    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(frame.covariance.data()) = result.covariance;
+    frame.covariance = publicCovariance(result.covariance);
+  }
+  frame.has_odometry = odometry.has_value();
+  if (odometry) {
+    frame.odometry = publicPose(odometry->odom_T_camera);
+    frame.odometry_covariance = publicCovariance(odometry->covariance);
+    frame.odometry_resets = odometry->resets;
   }
   frame.tracked_points = result.tracked_points;
   frame.mapped_points = result.mapped_points;

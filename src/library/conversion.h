@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "edgeslam/types.h"
 #include "map/map.h"
 #include "tracking/frame_result.h"
+#include "visual_odometry/odometry_frame.h"
 
 namespace edgeslam {
 
@@ -22,7 +24,7 @@ void requireLater(std::int64_t time_ns, std::int64_t last_time_ns);
 
 CameraPose publicPose(const Pose& world_T_camera);
 int publicWorld(int world);  // of a pose
-PosedFrame publicFrame(const FrameResult& result);
+PosedFrame publicFrame(const FrameResult& result, const std::optional<OdometryFrame>& odometry);
 std::vector<MapEdgePoint> publicMap(const Map& map, const Camera& camera);
 // Throws InputError where the map is empty or cannot be written.
 void saveLibraryMap(const std::string& path, const Camera& camera, const Map& map);

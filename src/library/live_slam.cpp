@@ -20,7 +20,7 @@ struct LiveSlam::Work {
   LiveObserver observer() {
     LiveObserver observer;
     observer.frame = [this](const FrameResult& result, const std::string&) {
-      PosedFrame frame = publicFrame(result);
+      PosedFrame frame = publicFrame(result, odometry.next(result));
       frame.latency_ms = result.latency_ms;
       if (poses) poses(frame);
     };
@@ -36,6 +36,7 @@ struct LiveSlam::Work {
   Camera camera;
   PoseReceiver poses;
   EventReceiver events;
+  CameraOdometry odometry;  // the publishing thread's
   std::int64_t frames = 0;
   std::int64_t last_time_ns = std::numeric_limits<std::int64_t>::min();
   bool stopped = false;

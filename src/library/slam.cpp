@@ -16,6 +16,7 @@ struct Slam::Work {
 
   Camera camera;
   LockstepRun run;
+  CameraOdometry odometry;
   std::int64_t frames = 0;
   std::int64_t last_time_ns = std::numeric_limits<std::int64_t>::min();
   std::size_t told_events = 0;
@@ -28,7 +29,7 @@ struct Slam::Work {
   PosedFrame latest() {
     ++frames;
     last_time_ns = run.latest().time_ns;
-    return publicFrame(run.latest());
+    return publicFrame(run.latest(), odometry.next(run.latest()));
   }
 };
 

@@ -17,6 +17,7 @@ MapView flatView(const TrackedFrame& first) {
 
 void makeFlatView(const TrackedFrame& first, MapView& view) {
   view.version = 0;
+  view.corrections = 0;
   view.initialised = false;
   view.keyframes.clear();
   view.points.clear();

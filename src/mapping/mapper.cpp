@@ -193,6 +193,7 @@ void Mapper::apply(const MapChange& change) {
     if (world_ == change.join->from) world_ = change.join->to;
   }
   renewUncertainty(camera_, options_.uncertainty, map_);
+  ++corrections_;
   ++version_;
 }
 
@@ -207,6 +208,7 @@ MapView Mapper::view(KeyframeId centre) const {
   }
   view.initialised = initialised_;
   view.version = version_;
+  view.corrections = corrections_;
   view.origin_frame = origin_frame_;
   reserveForTracking(view);
   return view;

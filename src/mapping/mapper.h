@@ -113,6 +113,7 @@ class Mapper {
   int next_world_ = 0;
   std::size_t starts_given_up_ = 0;
   std::uint64_t version_ = 0;
+  std::int64_t corrections_ = 0;        // of the map as a whole
   std::int64_t origin_frame_ = -1;      // of the latest start
   std::optional<InitialFrames> spare_;  // another start that it may go on from
   std::vector<CulledKeyframe> culled_;

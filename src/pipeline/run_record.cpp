@@ -11,6 +11,11 @@ FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
   if (unreadable) ++result_.unreadable_frames;
   FrameRecord& record = result_.frames.emplace_back();
   static_cast<FrameResult&>(record) = frame;
+  if (const std::optional<OdometryFrame> odometry = odometry_.next(frame)) {
+    record.has_odometry = true;
+    record.odom_T_camera = odometry->odom_T_camera;
+    record.odometry_resets = odometry->resets;
+  }
   carried_.push_back(inWorldOfToday({frame.reference, frame.reference_T_camera, frame.world}));
   return record;
 }

@@ -10,6 +10,7 @@
 #include "pipeline/messages.h"
 #include "pipeline/run_result.h"
 #include "tracking/frame_result.h"
+#include "visual_odometry/odometry_frame.h"
 
 namespace edgeslam {
 
@@ -44,6 +45,7 @@ class RunRecord {
   int mainWorld() const;
 
   RunResult result_;
+  CameraOdometry odometry_;
   KeyframeId first_keyframe_ = 0;    // of this run
   std::deque<CarriedPose> carried_;  // by frame record
   std::map<KeyframeId, CulledKeyframe> culled_;

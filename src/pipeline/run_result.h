@@ -21,6 +21,9 @@ struct FrameRecord : FrameResult {
   int final_world = -1;         // that the final pose is in, after all joining; -1: none
   Pose final_world_T_camera;
   bool is_keyframe = false;
+  bool has_odometry = false;
+  Pose odom_T_camera;  // in the frame that never jumps (visual_odometry/odometry_frame.h)
+  int odometry_resets = 0;
 };
 
 struct KeyframeRecord {

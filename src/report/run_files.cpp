@@ -101,6 +101,14 @@ std::vector<FileContent> worldFiles(const RunResult& result, const std::vector<W
   return files;
 }
 
+Trajectory odometryTrajectory(const RunResult& result) {
+  Trajectory trajectory;
+  for (const FrameRecord& frame : result.frames) {
+    if (frame.has_odometry) trajectory.push_back({frame.time_ns, frame.odom_T_camera});
+  }
+  return trajectory;
+}
+
 void removeWorldsOfEarlierRuns(const std::string& folder, const std::vector<FileContent>& written) {
   namespace fs = std::filesystem;
   std::vector<fs::path> left_over;
@@ -171,6 +179,7 @@ void writeRunFiles(const std::string& folder, const RunResult& result, const Run
   const std::string summary_text =
       summaryJson(summary, result, description).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   std::vector<FileContent> files = worldFiles(result, summary.worlds);
+  files.push_back({"trajectory_odometry.txt", formatTrajectory(odometryTrajectory(result))});
   files.push_back({"frames.csv", formatFrameTable(result)});
   files.push_back({"summary.json", summary_text});
   if (reportsAreBuiltIn()) files.push_back({"report.html", formatReport(result, summary, description, ground_truth)});

@@ -35,6 +35,9 @@ void clear(FrameResult& result) {
   result.covariance.setZero();
   result.world_covariance.setZero();
   result.reference = -1;
+  result.has_motion = result.previous_position_was_held = false;
+  result.previous_time_ns = result.map_corrections = 0;
+  result.previous_T_camera = Pose();
   result.tracked_points = result.mapped_points = 0;
   result.measured_noise = 0;
   result.noise_factor = 1;

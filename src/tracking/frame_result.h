@@ -40,8 +40,15 @@ struct FrameResult {
   Matrix6d covariance = Matrix6d::Zero(), world_covariance = Matrix6d::Zero();
   KeyframeId reference = -1;  // the keyframe that carries this frame's final pose, or -1
   Pose reference_T_camera;
-  int tracked_points = 0;  // points followed in the image
-  int mapped_points = 0;   // map points that agree with the pose
+  // How the camera moved since the frame that was located before, both as the map is now, so that corrections of the
+  // map are no motion. Predicted where the pose is, and where it was lost.
+  bool has_motion = false;
+  std::int64_t previous_time_ns = 0;
+  Pose previous_T_camera;
+  bool previous_position_was_held = false;
+  std::int64_t map_corrections = 0;  // of the map as a whole (loops, worlds joined), until this frame
+  int tracked_points = 0;            // points followed in the image
+  int mapped_points = 0;             // map points that agree with the pose
   // How many times as far as presumed of a good camera the map points in view erred, in this frame alone; 0: too few.
   double measured_noise = 0;
   double noise_factor = 1;  // how many times as far as presumed of a good camera measurements err (measured_noise.h)

@@ -304,8 +304,18 @@ void Tracker::tell(Work& work) {
   result.world = last_world_ = view_.world;
   result.world_covariance = worldCovariance(camera_, withSharedNoise(frame_.covariance), map_covariance_,
                                             frame_.outlier_share, options_.uncertainty);
+  tellMotion(frame_.world_T_camera, result);
   result.reference = view_.keyframes.back().id;
   result.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * frame_.world_T_camera;
+}
+
+void Tracker::tellMotion(const Pose& world_T_camera, FrameResult& result) const {
+  result.map_corrections = view_.corrections;
+  if (!last_.isThere()) return;
+  result.has_motion = true;
+  result.previous_time_ns = last_.images->time_ns;
+  result.previous_T_camera = last_.world_T_camera.inverse() * world_T_camera;
+  result.previous_position_was_held = last_.position_is_held;
 }
 
 // What makes a camera err more than presumed makes neighbouring points err alike: many of them say no more than a few.
@@ -337,6 +347,7 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult
   result.has_pose = true;
   result.world = view_.world;
   result.world_T_camera = motion_.predict(lastCamera(), time_ns);
+  tellMotion(result.world_T_camera, result);
   const double seconds = static_cast<double>(time_ns - last_.images->time_ns) * 1e-9;
   result.covariance = MotionModel::predictedCovariance(last_.covariance, seconds);
   result.world_covariance = worldCovariance(camera_, withSharedNoise(result.covariance), map_covariance_,

@@ -122,6 +122,7 @@ class Tracker {
   void reuseMapWhenDue(Work& work);
   void reuseMap(FollowedFrame& frame);
   void tell(Work& work);
+  void tellMotion(const Pose& world_T_camera, FrameResult& result) const;
   Matrix6d withSharedNoise(const Matrix6d& covariance) const;
   void remember();
   void predict(std::int64_t time_ns, std::string_view reason, FrameResult& result) const;

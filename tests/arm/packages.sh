@@ -21,7 +21,7 @@ rm -rf "$folder/packages"
 rm -rf "$folder/packages/_CPack_Packages"
 ls -l "$folder"/packages/*.deb | awk '{print $5 " bytes", $9}' | sed "s#$folder/##"
 
-for package in edgeslam_*.deb libedgeslam1_*.deb libedgeslam-dev_*.deb edgeslam-dbgsym_*.ddeb libedgeslam1-dbgsym_*.ddeb; do
+for package in edgeslam_*.deb libedgeslam2_*.deb libedgeslam-dev_*.deb edgeslam-dbgsym_*.ddeb libedgeslam2-dbgsym_*.ddeb; do
   [[ -n $(compgen -G "$folder/packages/$package") ]] || fail "no package $package"
 done
 package=$(echo "$folder"/packages/edgeslam_*_arm64.deb)

@@ -9,7 +9,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
 folder=$(mktemp -d --tmpdir="$build" find_package-XXXXXX)
 trap 'rm -rf "$folder"' EXIT
-for component in libedgeslam1 libedgeslam-dev; do
+for component in libedgeslam2 libedgeslam-dev; do
   cmake --install "$build" --component "$component" --prefix "$folder/installed" > "$folder/log" || { cat "$folder/log"; exit 1; }
 done
 for project in "$here/find_package" "$folder/installed/share/doc/libedgeslam-dev/examples"; do

@@ -37,7 +37,7 @@ make_packages() {
     { tail -20 "$folder/build.log"; fail "build of the packages"; }
   rm -rf "$folder/_CPack_Packages"
   ls -l "$folder"/*.{deb,ddeb} | awk '{print $5 " bytes", $9}' | sed "s#$folder/##"
-  for package in edgeslam_*.deb libedgeslam1_*.deb libedgeslam-dev_*.deb edgeslam-dbgsym_*.ddeb libedgeslam1-dbgsym_*.ddeb; do
+  for package in edgeslam_*.deb libedgeslam2_*.deb libedgeslam-dev_*.deb edgeslam-dbgsym_*.ddeb libedgeslam2-dbgsym_*.ddeb; do
     [[ -n $(compgen -G "$folder/$package") ]] || fail "no package $package"
   done
   local errors
@@ -79,8 +79,8 @@ run_program() {
 }
 
 build_against_library() {
-  install "/tmp/libedgeslam1_*.deb /tmp/libedgeslam-dev_*.deb g++ make cmake"
-  check "the library: $(size_of libedgeslam1) KiB"
+  install "/tmp/libedgeslam2_*.deb /tmp/libedgeslam-dev_*.deb g++ make cmake"
+  check "the library: $(size_of libedgeslam2) KiB"
   cp -r "$sources/tests/package/find_package" "$root/tmp/"
   cp -r "$root/usr/share/doc/libedgeslam-dev/examples" "$root/tmp/"
   printf 'camera: {calibration: /tmp/recording/camera.yaml}\n' > "$root/tmp/robot.yaml"
@@ -100,7 +100,7 @@ build_against_library() {
 look_at_symbols() {
   run_or_fail "installation of the symbols" sh -c "dpkg -i /tmp/*-dbgsym_*.ddeb"
   local library address place build_id
-  for name in /usr/bin/edgeslam "/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)/libedgeslam.so.1"; do
+  for name in /usr/bin/edgeslam "/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)/libedgeslam.so.2"; do
     library=$(run readlink -f "$name")
     build_id=$(run readelf -n "$library" | sed -n 's/.*Build ID: //p')
     [[ -s $root/usr/lib/debug/.build-id/${build_id::2}/${build_id:2}.debug ]] || fail "no symbols of $name"
@@ -108,7 +108,7 @@ look_at_symbols() {
   address=$(run nm --dynamic --demangle "$library" | sed -n 's/^\([0-9a-f]*\) T edgeslam::Slam::process(.*/\1/p')
   place=$(run addr2line -f -C -e "/usr/lib/debug/.build-id/${build_id::2}/${build_id:2}.debug" "0x$address" | tr '\n' ' ')
   [[ $place == *edgeslam::Slam::process*src/library/slam.cpp:[1-9]* ]] || fail "symbols: $place"
-  check "symbols: ${place% }, of $(size_of edgeslam-dbgsym) and $(size_of libedgeslam1-dbgsym) KiB"
+  check "symbols: ${place% }, of $(size_of edgeslam-dbgsym) and $(size_of libedgeslam2-dbgsym) KiB"
 }
 
 upgrade_and_remove() {
@@ -116,7 +116,7 @@ upgrade_and_remove() {
   run_or_fail "installation over itself" sh -c "dpkg -i /tmp/edgeslam_*_$arch.deb"
   grep -q "^# mine" "$root/etc/edgeslam/robot.yaml" || fail "an upgrade changes the user's configuration"
   check "an upgrade keeps the user's configuration"
-  run_or_fail removal sh -c "apt-get purge -qq -y edgeslam libedgeslam1 libedgeslam-dev && apt-get autoremove -qq -y --purge"
+  run_or_fail removal sh -c "apt-get purge -qq -y edgeslam libedgeslam2 libedgeslam-dev && apt-get autoremove -qq -y --purge"
   local left
   left=$(comm -13 "$folder/before.txt" <(files) | grep -i edgeslam || true)
   [[ -z $left ]] || { echo "$left"; fail "removal leaves these"; }

@@ -52,7 +52,7 @@ TEST(LcmPublisher, EveryFrameIsToldAndMeasuredOnesAsPoses) {
       publisher.frame(measuredFrame(i, {Eigen::Quaterniond::Identity(), {0.1 * i, 0, 0}}));
     }
     publisher.frame(frameWithoutPose(4, TrackingState::lost, "dark"));
-    EXPECT_TRUE(comesTrue([&] { return publisher.counts().sent == 13; }));
+    EXPECT_TRUE(comesTrue([&] { return publisher.counts().sent == 19; }));
     EXPECT_EQ(publisher.counts().not_sent, 0);
     EXPECT_EQ(publisher.problem(), "");
     EXPECT_FALSE(publisher.nextCommand());
@@ -67,7 +67,11 @@ TEST(LcmPublisher, EveryFrameIsToldAndMeasuredOnesAsPoses) {
     }
     if (message.channel == "SLAM_REL_ODOMETRY") statuses.push_back(message.as<update_t>().estimate_status);
   }
-  EXPECT_EQ(channels, (std::map<std::string, int>{{"SLAM_POSE", 3}, {"SLAM_REL_ODOMETRY", 5}, {"SLAM_STATE", 5}}));
+  EXPECT_EQ(channels, (std::map<std::string, int>{{"SLAM_CORRECTION", 3},
+                                                  {"SLAM_ODOMETRY", 3},
+                                                  {"SLAM_POSE", 3},
+                                                  {"SLAM_REL_ODOMETRY", 5},
+                                                  {"SLAM_STATE", 5}}));
   EXPECT_EQ(statuses, (std::vector<std::uint8_t>{0, 0, 1, 1, 2})) << "the first pose has none before it";
 }
 
@@ -80,8 +84,13 @@ TEST(LcmPublisher, AMapBegunAnewHasNoMotionFromTheOldOne) {
     publisher.frame(frameWithoutPose(1, TrackingState::initialising, "reset"));
     publisher.frame(measuredFrame(2, Pose()));
   }
-  const std::vector<LoggedMessage> messages = readLog(log);
-  EXPECT_EQ(messages.back().as<update_t>().estimate_status, update_t::NO_DATA);
+  std::vector<LoggedMessage> updates, corrections;
+  for (const LoggedMessage& message : readLog(log)) {
+    if (message.channel == "SLAM_REL_ODOMETRY") updates.push_back(message);
+    if (message.channel == "SLAM_CORRECTION") corrections.push_back(message);
+  }
+  EXPECT_EQ(updates.back().as<update_t>().estimate_status, update_t::NO_DATA);
+  EXPECT_EQ(corrections.back().as<correction_t>().reset_count, 1);
 }
 
 TEST(LcmPublisher, AMapGoesOutInPiecesBetweenTheFrames) {
@@ -150,17 +159,17 @@ TEST(LcmPublisher, AStatusTellsWhatWasSent) {
   {
     LcmPublisher publisher(toFile(log), Pose());
     publisher.frame(measuredFrame(0, Pose()));
-    ASSERT_TRUE(comesTrue([&] { return publisher.counts().sent == 3; }));
+    ASSERT_TRUE(comesTrue([&] { return publisher.counts().sent == 5; }));
     PublisherStatus status;
     status.keyframes = 5;
     publisher.status(status);
     publisher.status(status);
   }
   const std::vector<LoggedMessage> messages = readLog(log);
-  ASSERT_EQ(messages.size(), 5U);
-  const auto first = messages[3].as<status_t>(), second = messages[4].as<status_t>();
+  ASSERT_EQ(messages.size(), 7U);
+  const auto first = messages[5].as<status_t>(), second = messages[6].as<status_t>();
   EXPECT_EQ(first.keyframes, 5);
-  EXPECT_EQ(first.messages_sent, 3);
+  EXPECT_EQ(first.messages_sent, 5);
   EXPECT_EQ(first.latency_p50_ms, 12);
   EXPECT_EQ(second.sequence, 1);
   EXPECT_EQ(second.latency_p50_ms, -1);
@@ -169,7 +178,7 @@ TEST(LcmPublisher, AStatusTellsWhatWasSent) {
 TEST(LcmPublisher, WhatCannotBeSentIsCountedAndToldWhy) {
   LcmPublisher publisher(toFile("/no/such/folder/log"), Pose());
   for (int i = 0; i < 5; ++i) publisher.frame(measuredFrame(i, Pose()));
-  EXPECT_TRUE(comesTrue([&] { return publisher.counts().not_sent == 15; }));
+  EXPECT_TRUE(comesTrue([&] { return publisher.counts().not_sent == 25; }));
   EXPECT_EQ(publisher.counts().sent, 0);
   EXPECT_NE(publisher.problem().find("/no/such/folder/log"), std::string::npos);
 }

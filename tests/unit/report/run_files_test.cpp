@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::set<std::string> run_file_names{"trajectory.txt", "trajectory_live.txt", "frames.csv", "keyframes.txt",
+const std::set<std::string> run_file_names{"trajectory.txt", "trajectory_live.txt", "trajectory_odometry.txt", "frames.csv", "keyframes.txt",
                                            "map.ply",        "summary.json",        "report.html"};
 
 class RunFiles : public testing::Test {
