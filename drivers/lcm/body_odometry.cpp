@@ -35,7 +35,7 @@ std::optional<OdometryMessages> BodyOdometry::next(const FrameResult& result, co
                           step->is_measured};
   if (before_ && before_->is_scale_known != now.is_scale_known) {
     step->is_broken = true;
-    step->before_T_now = Pose();
+    step->before_T_now = step->taken_back = Pose();
   }
   const MotionStep of_body = bodyStep(*step, robot);
   frame_ = moved(frame_, of_body);

@@ -57,7 +57,9 @@ std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredP
 MotionStep bodyStep(const MotionStep& of_camera, const RobotSetup& robot) {
   MotionStep step = of_camera;
   step.before_T_now = onBody(of_camera.before_T_now, robot);
-  step.covariance = onBody(of_camera.covariance, robot);
+  step.taken_back = onBody(of_camera.taken_back, robot);
+  step.drift = onBody(of_camera.drift, robot);
+  step.pose_covariance = onBody(of_camera.pose_covariance, robot);
   return step;
 }
 

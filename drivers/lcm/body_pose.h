@@ -38,7 +38,7 @@ Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& rob
 // a correction of the map in between is no motion where the keyframe is the same.
 std::optional<BodyMotion> bodyMotion(const MeasuredPose& before, const MeasuredPose& now, const RobotSetup& robot);
 
-// The body's motion for the camera's, and its covariance likewise.
+// The body's motion for the camera's, and its covariances likewise.
 MotionStep bodyStep(const MotionStep& of_camera, const RobotSetup& robot);
 
 }  // namespace edgeslam

@@ -5,9 +5,13 @@
 namespace edgeslam {
 
 OdometryFrame moved(const OdometryFrame& before, const MotionStep& step) {
-  return {before.odom_T_camera * step.before_T_now,
-          carriedCovariance(before.covariance, step.before_T_now) + step.covariance,
-          before.resets + (step.is_broken ? 1 : 0)};
+  OdometryFrame now;
+  const Pose before_T_now = step.before_T_now * step.taken_back;
+  now.odom_T_camera = before.odom_T_camera * before_T_now;
+  now.drift = carriedCovariance(before.drift, before_T_now) + step.drift;
+  now.covariance = now.drift + step.pose_covariance;
+  now.resets = before.resets + (step.is_broken ? 1 : 0);
+  return now;
 }
 
 std::optional<OdometryFrame> CameraOdometry::next(const FrameResult& result) {

@@ -8,8 +8,8 @@ namespace edgeslam {
 
 struct OdometryFrame {
   Pose odom_T_camera;                      // or of the body that carries it
-  Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update, since the start; errors of steps taken as
-                                           // independent
+  Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update, since the start
+  Matrix6d drift = Matrix6d::Zero();       // the part of it that stays; the rest is of the pose now
   int resets = 0;  // how often the motion in between was not known: it goes on from where it was
 };
 

@@ -16,7 +16,7 @@ class MovingCamera {
     FrameResult frame = next();
     frame.state = TrackingState::tracking;
     frame.has_pose = true;
-    frame.covariance = 1e-6 * Matrix6d::Identity();
+    setCovariance(1e-6, frame);
     located();
     return frame;
   }
@@ -28,7 +28,7 @@ class MovingCamera {
     const Pose world_T_previous = world_T_camera_ * since_located_.inverse();
     frame.previous_T_camera.translation += off;
     frame.world_T_camera.translation += world_T_previous.rotation * off;
-    frame.covariance = (1e-6 + 1e-4 * ++frames_since_) * Matrix6d::Identity();
+    setCovariance(1e-6 + 1e-4 * ++frames_since_, frame);
     return frame;
   }
   FrameResult lost() {
@@ -42,7 +42,9 @@ class MovingCamera {
     FrameResult frame = tracked();
     frame.position_is_held = true;
     frame.previous_T_camera.translation.setZero();
-    frame.covariance.diagonal().head<3>().array() += 1e-4;
+    for (Matrix6d* covariance : {&frame.covariance, &frame.world_covariance}) {
+      covariance->diagonal().head<3>().array() += 1e-4;
+    }
     was_held_ = true;
     return frame;
   }
@@ -55,6 +57,11 @@ class MovingCamera {
   void forgetLocated() { previous_ns_ = -1; }
 
  private:
+  // In the world it grows along the way.
+  void setCovariance(double variance, FrameResult& frame) const {
+    frame.covariance = variance * Matrix6d::Identity();
+    frame.world_covariance = frame.covariance + 1e-7 * static_cast<double>(index_) * Matrix6d::Identity();
+  }
   FrameResult next() {
     world_T_camera_ = world_T_camera_ * step_;
     since_located_ = since_located_ * step_;
