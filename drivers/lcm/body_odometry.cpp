@@ -31,8 +31,11 @@ std::optional<OdometryMessages> BodyOdometry::next(const FrameResult& result, co
   std::optional<MotionStep> step = steps_.next(result);
   if (!step) return std::nullopt;
   const Circumstances now{hasUsablePose(result) ? worldOf(result) : (before_ ? before_->world : 0),
-                          result.map_corrections, robot.scale.metres_per_unit, robot.scale.kind != ScaleKind::unknown,
-                          step->is_measured};
+                          result.map_corrections,
+                          robot.scale.metres_per_unit,
+                          robot.scale.kind != ScaleKind::unknown,
+                          step->is_measured,
+                          differ(step->taken_back, Pose())};
   if (before_ && before_->is_scale_known != now.is_scale_known) {
     step->is_broken = true;
     step->before_T_now = step->taken_back = Pose();
@@ -78,7 +81,8 @@ std::int8_t BodyOdometry::reasonOf(const FrameResult& result, const Circumstance
     return correction_t::FOUND_AGAIN;
   }
   if (now.map_corrections != before_->map_corrections) return correction_t::MAP_CORRECTED;
-  return before_->is_measured ? correction_t::MAP_ADJUSTED : correction_t::MEASURED_AGAIN;
+  const bool is_after_gap = now.is_taking_back || !before_->is_measured;
+  return is_after_gap ? correction_t::MEASURED_AGAIN : correction_t::MAP_ADJUSTED;
 }
 
 }  // namespace edgeslam

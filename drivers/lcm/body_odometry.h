@@ -28,6 +28,7 @@ class BodyOdometry {
     double metres_per_unit = 1;
     bool is_scale_known = false;
     bool is_measured = false;
+    bool is_taking_back = false;  // what was predicted wrong
   };
 
   std::int8_t reasonOf(const FrameResult& result, const Circumstances& now) const;

@@ -81,6 +81,10 @@ TEST(BodyOdometry, SaysWhenItsCorrectionChangedAndWhy) {
 
   EXPECT_FALSE(correctionOf(camera.predicted({0.1, 0, 0})).is_measured);
   EXPECT_EQ(correctionOf(camera.tracked()).change, correction_t::MEASURED_AGAIN);
+  frame = camera.tracked();
+  correction = correctionOf(frame);
+  EXPECT_EQ(correction.change, correction_t::MEASURED_AGAIN) << "it is taken back over half a second";
+  EXPECT_EQ(correction.change_utime, utimeOf(frame.time_ns));
 
   camera.enterWorld(1);
   correction = correctionOf(camera.tracked());
