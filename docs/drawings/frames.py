@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Draws docs/frames.svg: the frames of camera, world, body and local, and the pixels. Writes it to standard output.
+"""Draws docs/frames.svg: the frames of camera, world, body, local and odom, and the pixels. Writes it to standard output.
 
 usage: frames.py > docs/frames.svg"""
 import math
 
-WIDTH, HEIGHT = 1000, 500
+WIDTH, HEIGHT = 1000, 530
 UNIT = 78                                             # [px a metre]
 FORWARD, LEFT, UP = (0.97, -0.16), (-0.42, -0.34), (0.0, -1.0)  # of the drawing's ground, on the paper
 COLOURS = ("#c62828", "#2e7d32", "#1565c0")           # x, y, z
@@ -116,11 +116,11 @@ def pixels(left, top, side):
 
 
 def main():
-    first, now = Robot((0, 0, 0), 0), Robot((5.3, 0.4, 0), 24)
+    first, now, drifted = Robot((0, 0, 0), 0), Robot((5.3, 0.4, 0), 24), Robot((0.9, -3.5, 0), 6)
     unit = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
              'font-family="DejaVu Sans, Helvetica, Arial, sans-serif" role="img">',
-             "<title>Frames: world and local at the first keyframe, camera and body now, and pixel coordinates</title>",
+             "<title>Frames: world and local at the first keyframe, odom, which drifts away from local, camera and body now, and pixels</title>",
              f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#ffffff"/>']
     ground = [paper((x, y, 0)) for x, y in ((-1.2, -1.0), (7.2, -1.0), (7.2, 1.9), (-1.2, 1.9))]
     parts.append(polygon(ground, "#f6f7f2", "#e3e6da"))
@@ -128,18 +128,25 @@ def main():
         parts += robot(of)
         parts += axes(of.point((0, 0, 0)), [of.vector(v) for v in unit], 0.95)
         parts += axes(of.point(CAMERA_ON_BODY), [of.vector(v) for v in CAMERA_AXES], 0.72)
+    parts += axes(drifted.place, [drifted.vector(v) for v in unit], 0.75)
     world, camera = paper(first.point(CAMERA_ON_BODY)), paper(now.point(CAMERA_ON_BODY))
-    local, body = paper(first.place), paper(now.place)
+    local, body, odom = paper(first.place), paper(now.place), paper(drifted.place)
     parts += arrow((world[0] + 8, world[1] - 12), (camera[0] - 10, camera[1] - 8), (-10, -110), "world_T_camera",
                    ((world[0] + camera[0]) / 2 - 20, (world[1] + camera[1]) / 2 - 88))
     parts += arrow((local[0] + 14, local[1] + 10), (body[0] - 6, body[1] + 9), (0, 74), "local_T_body",
-                   ((local[0] + body[0]) / 2 + 20, (local[1] + body[1]) / 2 + 78))
+                   ((local[0] + body[0]) / 2 + 26, (local[1] + body[1]) / 2 + 10))
+    parts += arrow((local[0] + 11, local[1] + 15), (odom[0] - 14, odom[1] - 1), (-24, 30), "local_T_odom",
+                   ((local[0] + odom[0]) / 2 - 22, odom[1] + 20))
+    parts += arrow((odom[0] + 14, odom[1] + 4), (body[0] + 3, body[1] + 12), (62, 74), "odom_T_body",
+                   (body[0] + 16, body[1] + 140))
     parts += arrow((body[0] + 12, body[1] + 2), (camera[0] + 8, camera[1] + 8), (110, 14), "body_T_camera",
                    ((body[0] + camera[0]) / 2 + 140, (body[1] + camera[1]) / 2 + 44))
     parts += [text((world[0] - 62, world[1] - 62), "world", 17, extra='font-weight="bold"', anchor="middle"),
               text((world[0] - 62, world[1] - 44), "camera at the first keyframe", 13, anchor="middle"),
               text((local[0] - 20, local[1] + 62), "local", 17, extra='font-weight="bold"', anchor="middle"),
               text((local[0] - 20, local[1] + 80), "body at the first keyframe", 13, anchor="middle"),
+              text((odom[0], odom[1] + 32), "odom", 17, extra='font-weight="bold"', anchor="middle"),
+              text((odom[0], odom[1] + 50), "never jumps, but drifts", 13, anchor="middle"),
               text((camera[0] - 10, camera[1] - 62), "camera", 17, extra='font-weight="bold"'),
               text((camera[0] - 10, camera[1] - 44), "x right, y down, z forward", 13),
               text((body[0] + 16, body[1] + 72), "body", 17, extra='font-weight="bold"'),
