@@ -237,7 +237,7 @@ TEST_F(BadInput, ADiskThatFillsUpLeavesNothingHalfWritten) {
   EXPECT_EQ(outcome.failures().size(), 1U) << outcome.messages;
   EXPECT_EQ(fileContent(result("summary.json")), before) << "an earlier result stays as it was";
   EXPECT_EQ(fileContent(result("report.html")), report);
-  EXPECT_EQ(std::distance(fs::directory_iterator(result()), fs::directory_iterator()), 7)
+  EXPECT_EQ(std::distance(fs::directory_iterator(result()), fs::directory_iterator()), 8)
       << "and nothing lies beside it";
 }
 
