@@ -9,6 +9,7 @@
 #include "configuration/configuration_capture.h"
 #include "configuration/configuration_keys.h"
 #include "configuration/configuration_text.h"
+#include "files/format_text.h"
 #include "frames/calibration_file.h"
 
 namespace edgeslam {
@@ -38,6 +39,10 @@ void listDifferences(const Configuration& configuration) {
   std::cout << configuration.source << ": a good configuration; "
             << (changes.empty() ? "all settings are the defaults" : "what differs from the defaults:") << "\n"
             << changes;
+  if (configuration.mask) {
+    std::cout << formatted("  mask: %s, %.1f %% of the image\n", configuration.mask_path.c_str(),
+                           100 * maskedShare(*configuration.mask));
+  }
   if (configuration.camera) {
     listCamera(*configuration.camera);
   } else {

@@ -132,7 +132,7 @@ Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Confi
   if (!arguments.map_in.empty()) replay.map_in = loadMap(arguments.map_in, camera);
   replay.record_folder = arguments.record;
   replay.pace = arguments.pace;
-  replay.description = {camera, formatConfiguration(configuration), EDGESLAM_VERSION};
+  replay.description = {camera, formatRecordedConfiguration(configuration), EDGESLAM_VERSION};
   ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   replay.progress = [&](const FrameResult& frame, const std::string& problem) {

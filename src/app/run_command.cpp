@@ -22,7 +22,7 @@ Camera cameraOf(const RunArguments& arguments, const Configuration& configuratio
   std::optional<Camera> beside;
   if (!arguments.source.empty()) beside = openFrameSource(arguments.source)->camera();
   if (configuration.camera) return *configuration.camera;
-  if (beside) return withReadout(*beside, configuration);
+  if (beside) return asConfigured(*beside, configuration);
   throw InputError((arguments.configuration.empty() ? "" : arguments.configuration + ": ") +
                    "no calibration of the camera; give one (camera.calibration)");
 }

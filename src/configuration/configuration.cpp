@@ -14,6 +14,7 @@
 #include "configuration/configuration_document.h"
 #include "configuration/configuration_keys.h"
 #include "files/key_suggestion.h"
+#include "frames/mask_file.h"
 
 namespace edgeslam {
 namespace {
@@ -189,8 +190,16 @@ void readFile(const std::string& path, bool may_include, Configuration& configur
 
 }  // namespace
 
-Camera withReadout(Camera camera, const Configuration& configuration) {
+std::string maskProblem(const Camera& camera, const Configuration& configuration) {
+  const std::string wrong = configuration.mask ? maskSizeProblem(*configuration.mask, camera) : "";
+  return wrong.empty() ? "" : "camera.mask: " + configuration.mask_path + " " + wrong;
+}
+
+Camera asConfigured(Camera camera, const Configuration& configuration) {
+  const std::string wrong = maskProblem(camera, configuration);
+  if (!wrong.empty()) throw InputError(configuration.source + ": " + wrong);
   camera.readout_s = configuration.readout_s.value_or(camera.readout_s);
+  camera.mask = configuration.mask;
   return camera;
 }
 

@@ -1,6 +1,7 @@
 // The configuration file: all settings of the method, and the camera with its place on the robot (design, section 6).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@
 #include "drivers/lcm/lcm_options.h"
 #include "drivers/viewer/viewer_options.h"
 #include "edgeslam/input_error.h"
-#include "geometry/camera.h"
+#include "geometry/camera_mask.h"
 #include "geometry/pose.h"
 #include "pipeline/settings.h"
 #include "scale/scale_options.h"
@@ -33,15 +34,21 @@ struct Configuration {
   std::optional<Camera> camera;  // where the file gives one
   // Where the file gives it without a calibration: instead of that of whatever calibration is taken.
   std::optional<double> readout_s;
-  bool has_readout = false;  // the file gives camera.readout, by itself or beside the calibration
-  Pose body_T_camera;        // of the camera on the robot, translation [m]; the identity unless the file gives it
-  CameraOptions capture;     // the live camera
+  bool has_readout = false;                // the file gives camera.readout, by itself or beside the calibration
+  std::shared_ptr<const CameraMask> mask;  // of the camera that is taken, `camera` or another; null: none
+  std::string mask_path;                   // absolute; of its image
+  Pose body_T_camera;     // of the camera on the robot, translation [m]; the identity unless the file gives it
+  CameraOptions capture;  // the live camera
   ServiceOptions service;
   std::string source;  // path of the file; empty for the defaults
 };
 
-// The camera, with the configuration's readout where that gives one by itself.
-Camera withReadout(Camera camera, const Configuration& configuration);
+// Why the configuration's mask cannot be that of the camera: `camera.mask: ...`; empty where it can, or there is none.
+std::string maskProblem(const Camera& camera, const Configuration& configuration);
+
+// The camera with what the configuration gives of it by itself: its readout and its mask. Throws InputError where there
+// is a maskProblem().
+Camera asConfigured(Camera camera, const Configuration& configuration);
 
 // An empty file gives the defaults; an included file is read first. Throws InputError `FILE:LINE: KEY: ...` at the
 // first problem.

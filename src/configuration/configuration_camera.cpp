@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "frames/calibration_file.h"
+#include "frames/mask_file.h"
 
 namespace edgeslam {
 namespace {
@@ -96,16 +97,30 @@ void readCalibrationFile(const YAML::Node& section, const YAML::Node& calibratio
   }
   for (const auto& entry : section) {
     const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    if (name == "calibration" || name == "readout" || name == "body_T_camera") continue;
+    if (name == "calibration" || name == "readout" || name == "mask" || name == "body_T_camera") continue;
     tell(entry.first.Mark().line, "camera." + name +
                                       ": the calibration is in a file already (camera.calibration); only "
-                                      "camera.readout can be given beside it");
+                                      "camera.readout and camera.mask can be given beside it");
   }
   const std::filesystem::path folder = std::filesystem::path(configuration.source).parent_path();
   try {
     configuration.camera = readCalibration((folder / calibration.Scalar()).string());
   } catch (const InputError& error) {
     tell(calibration.Mark().line, std::string("camera.calibration: ") + error.what());
+  }
+}
+
+void readMaskFile(const YAML::Node& mask, Configuration& configuration, const TellProblem& tell) {
+  if (!mask.IsScalar() || mask.Scalar().empty()) {
+    return tell(mask.Mark().line, "camera.mask: the path of an image is expected");
+  }
+  const std::filesystem::path folder = std::filesystem::path(configuration.source).parent_path();
+  const std::string path = (folder / mask.Scalar()).string();
+  try {
+    configuration.mask = readMask(path);
+    configuration.mask_path = std::filesystem::absolute(path).lexically_normal().string();
+  } catch (const InputError& error) {
+    tell(mask.Mark().line, std::string("camera.mask: ") + error.what());
   }
 }
 
@@ -210,15 +225,22 @@ std::vector<ConfigurationKey> calibrationKeyNames() {
 }
 
 void readCameraSection(const YAML::Node& section, Configuration& configuration, const TellProblem& tell) {
-  const YAML::Node calibration = section["calibration"], readout = section["readout"], pose = section["body_T_camera"];
-  const bool has_calibration = section.size() > (readout ? 1U : 0U) + (pose ? 1U : 0U);
+  const YAML::Node calibration = section["calibration"], readout = section["readout"], mask = section["mask"],
+                   pose = section["body_T_camera"];
+  const bool has_calibration = section.size() > (readout ? 1U : 0U) + (mask ? 1U : 0U) + (pose ? 1U : 0U);
   if (calibration) {
     readCalibrationFile(section, calibration, configuration, tell);
   } else if (has_calibration) {
     readInlineCalibration(section, configuration, tell);
   }
   if (readout) readReadout(readout, configuration, tell);
-  if (configuration.camera) configuration.camera = withReadout(*configuration.camera, configuration);
+  if (mask) readMaskFile(mask, configuration, tell);
+  const std::string wrong_mask = configuration.camera ? maskProblem(*configuration.camera, configuration) : "";
+  if (!wrong_mask.empty()) {
+    tell((mask ? mask : section).Mark().line, wrong_mask);
+  } else if (configuration.camera) {
+    configuration.camera = asConfigured(*configuration.camera, configuration);
+  }
   if (readout || has_calibration) configuration.has_readout = configuration.readout_s.has_value();
   // Beside a calibration it is of that one, and not of another that takes its place.
   if (readout && has_calibration) configuration.readout_s.reset();
@@ -236,7 +258,8 @@ std::string formatCameraSection(const Configuration& configuration) {
   const Eigen::Quaterniond& q = pose.rotation;
   std::string text = "camera:\n";
   if (configuration.camera) {
-    Camera camera = withReadout(*configuration.camera, configuration);  // also one that was set since
+    Camera camera = *configuration.camera;
+    camera.readout_s = configuration.readout_s.value_or(camera.readout_s);  // also one that was set since
     text += std::string("  model: ") + modelName(camera.model) + "\n";
     for (const CalibrationKey& known : calibrationKeys(camera)) {
       text += "  " + known.key.name() + ": " + valueText(known.key.field) + "\n";
@@ -245,6 +268,7 @@ std::string formatCameraSection(const Configuration& configuration) {
   } else if (configuration.readout_s) {
     text += "  readout: " + numberText(*configuration.readout_s) + "\n";
   }
+  if (configuration.mask) text += "  mask: " + quoted(configuration.mask_path) + "\n";
   text += "  body_T_camera: {translation: [" + numberText(t.x()) + ", " + numberText(t.y()) + ", " + numberText(t.z()) +
           "], quaternion: [" + numberText(q.w()) + ", " + numberText(q.x()) + ", " + numberText(q.y()) + ", " +
           numberText(q.z()) + "]}\n";

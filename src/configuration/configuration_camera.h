@@ -22,8 +22,8 @@ bool isCalibration(const YAML::Node& document);
 // The keys of an inline calibration of either camera model, for the table of keys: documented, without fields.
 std::vector<ConfigurationKey> calibrationKeyNames();
 
-// Fills camera, readout_s and body_T_camera from the section's mapping; a calibration's path is relative to the
-// configuration file. Unknown and repeated keys are the caller's business.
+// Fills camera, readout_s, mask and body_T_camera from the section's mapping; the paths of a calibration and of a mask
+// are relative to the configuration file. Unknown and repeated keys are the caller's business.
 void readCameraSection(const YAML::Node& section, Configuration& configuration, const TellProblem& tell);
 
 // The section as YAML; empty where there is neither a camera nor a pose.

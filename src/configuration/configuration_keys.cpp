@@ -50,6 +50,10 @@ Keys cameraKeys(CameraOptions& capture) {
   };
   for (const ConfigurationKey& key : calibrationKeyNames()) keys.push_back(key);
   Keys others{
+      special("camera.mask",
+              "image of the camera's size, relative to this file: where it is black, images are not looked at, as the "
+              "robot's\nown body is in view there (docs/mounting.md); also beside camera.calibration",
+              "mask.png"),
       special("camera.body_T_camera",
               "pose of the camera (x right, y down, z forward) on the robot: 4x4 matrix row by row, or translation [m] "
               "and\nunit quaternion (w, x, y, z) (default: the identity)",

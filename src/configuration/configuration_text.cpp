@@ -6,6 +6,7 @@
 #include "configuration/configuration_camera.h"
 #include "configuration/configuration_capture.h"
 #include "configuration/configuration_keys.h"
+#include "recording/recording_layout.h"
 
 namespace edgeslam {
 namespace {
@@ -66,6 +67,11 @@ std::string formatConfiguration(const Configuration& configuration) {
     text += "  " + key.name() + ": " + value + "\n";
   }
   return text;
+}
+
+std::string formatRecordedConfiguration(Configuration configuration) {
+  configuration.mask_path = recording_mask_name;
+  return formatConfiguration(configuration);
 }
 
 std::string usersConfigurationText() {

@@ -11,6 +11,9 @@ namespace edgeslam {
 // business. Of what is about camera, messages and disk only what differs from the defaults.
 std::string formatConfiguration(const Configuration& configuration);
 
+// The same for a recording, which has the mask's image beside it (recording/recording_layout.h).
+std::string formatRecordedConfiguration(Configuration configuration);
+
 // firmware_cfg/edgeslam.yaml: the keys that a user has reason to change, each with documentation, unit, range and
 // default.
 std::string usersConfigurationText();

@@ -12,7 +12,7 @@ Configuration configurationFor(const FrameSource& source, const std::string& fil
 
 Camera cameraFor(const FrameSource& source, const Configuration& configuration, const std::string& input) {
   if (configuration.camera) return *configuration.camera;
-  if (source.camera()) return withReadout(*source.camera(), configuration);
+  if (source.camera()) return asConfigured(*source.camera(), configuration);
   throw InputError(
       input +
       ": no calibration: put a camera.yaml beside the frames, or give one in the configuration (camera.calibration)");

@@ -12,8 +12,8 @@ namespace edgeslam {
 // InputError as readConfiguration() does.
 Configuration configurationFor(const FrameSource& source, const std::string& file);
 
-// The configuration's calibration, or else the one beside the frames, with the configuration's readout where it gives
-// one. Throws InputError, which names `input`, where there is no calibration.
+// The configuration's calibration, or else the one beside the frames, as configured (asConfigured()). Throws
+// InputError, which names `input`, where there is no calibration.
 Camera cameraFor(const FrameSource& source, const Configuration& configuration, const std::string& input);
 
 }  // namespace edgeslam

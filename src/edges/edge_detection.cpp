@@ -9,6 +9,17 @@
 #include "edges/zero_crossing.h"
 
 namespace edgeslam {
+namespace {
+
+// The points stay in the list, but the index does not name them: no edge.
+void hide(const CameraMask& mask, const std::vector<EdgePixel>& points, cv::Mat& index) {
+  CV_Assert(mask.hidden.size() == index.size());
+  for (const EdgePixel& point : points) {
+    if (mask.hidden.at<uint8_t>(point.cell) != 0) index.at<int>(point.cell) = -1;
+  }
+}
+
+}  // namespace
 
 EdgeMap makeEdgeMap(const cv::Size& size) {
   EdgeMap edges;
@@ -17,7 +28,8 @@ EdgeMap makeEdgeMap(const cv::Size& size) {
   return edges;
 }
 
-void detectEdges(const cv::Mat& grey, const EdgeOptions& options, EdgeWorkspace& workspace, EdgeMap& edges) {
+void detectEdges(const cv::Mat& grey, const EdgeOptions& options, EdgeWorkspace& workspace, EdgeMap& edges,
+                 const CameraMask* mask) {
   CV_Assert(grey.empty() || grey.type() == CV_8U);
   CV_Assert(options.sigma > 0 && options.sigma_ratio > 1 && options.plane_fit_radius >= 1 &&
             options.plane_fit_radius <= largest_fit_radius);
@@ -31,14 +43,15 @@ void detectEdges(const cv::Mat& grey, const EdgeOptions& options, EdgeWorkspace&
   workspace.behind.reserve(most);
   edges.points.reserve(most);
   findEdgePixels(workspace.blurs, options, workspace.pixels, edges.index);
+  if (mask) hide(*mask, workspace.pixels.points, edges.index);
   thin(workspace.pixels.points, edges.index);
   joinChains(options.shortest_chain, workspace, edges);
 }
 
-EdgeMap detectEdges(const cv::Mat& grey, const EdgeOptions& options) {
+EdgeMap detectEdges(const cv::Mat& grey, const EdgeOptions& options, const CameraMask* mask) {
   EdgeWorkspace workspace;
   EdgeMap edges;
-  detectEdges(grey, options, workspace, edges);
+  detectEdges(grey, options, workspace, edges, mask);
   return edges;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "edges/edge_pixels.h"
+#include "geometry/camera_mask.h"
 #include "image/difference_of_gaussians.h"
 
 namespace edgeslam {
@@ -40,12 +41,13 @@ struct EdgeWorkspace {
 EdgeMap makeEdgeMap(const cv::Size& size);
 
 // `grey` is CV_8U. An image without edges gives an empty map; of an image with more edge points than mostEdgePoints
-// the lowest rows are left out. Allocates only where `workspace` was not used with these options for an image of this
-// size, or `edges` has not the memory of makeEdgeMap.
-void detectEdges(const cv::Mat& grey, const EdgeOptions& options, EdgeWorkspace& workspace, EdgeMap& edges);
+// the lowest rows are left out. Where `mask` hides the image there are no edges. Allocates only where `workspace` was
+// not used with these options for an image of this size, or `edges` has not the memory of makeEdgeMap.
+void detectEdges(const cv::Mat& grey, const EdgeOptions& options, EdgeWorkspace& workspace, EdgeMap& edges,
+                 const CameraMask* mask = nullptr);
 
 // The edges of `grey` (CV_8U) in memory of their own.
-EdgeMap detectEdges(const cv::Mat& grey, const EdgeOptions& options);
+EdgeMap detectEdges(const cv::Mat& grey, const EdgeOptions& options, const CameraMask* mask = nullptr);
 
 // Index of the edge point nearest to `pixel` within `radius` [px] whose normal agrees (dot product at least
 // `least_dot`; pass -1 to accept every direction), or -1.

@@ -38,12 +38,14 @@ double medianOf(const std::array<int, 2041>& counts) {
 
 }  // namespace
 
-double gradientNoise(const cv::Mat& grey) {
+double gradientNoise(const cv::Mat& grey, const CameraMask* mask) {
   std::array<int, 2041> counts{};  // of absolute second differences
   const auto row = static_cast<std::ptrdiff_t>(grey.step1());
   for (int y = 1; y < grey.rows - 1; y += sampling_step) {
     const uint8_t* pixels = grey.ptr<uint8_t>(y);
+    const uint8_t* hidden = mask ? mask->hidden.ptr<uint8_t>(y) : nullptr;
     for (int x = 1; x < grey.cols - 1; x += sampling_step) {
+      if (hidden && hidden[x] != 0) continue;
       ++counts[static_cast<size_t>(std::abs(secondDifferences(pixels + x, row)))];
     }
   }

@@ -6,8 +6,8 @@
 
 namespace edgeslam {
 
-PointAccuracy accuracyIn(const cv::Mat& grey, const PointAccuracyOptions& options) {
-  return {options, std::max(0.0, gradientNoise(grey) - options.noise)};
+PointAccuracy accuracyIn(const cv::Mat& grey, const PointAccuracyOptions& options, const CameraMask* mask) {
+  return {options, std::max(0.0, gradientNoise(grey, mask) - options.noise)};
 }
 
 double sigmaAcross(bool corner, const PointAccuracy& accuracy) {

@@ -5,6 +5,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "edges/structure_tensor.h"
+#include "geometry/camera_mask.h"
 
 namespace edgeslam {
 
@@ -26,8 +27,8 @@ struct PointAccuracy {
   double noise_factor = 1;  // how many times as far as presumed measurements err (tracking/measured_noise.h)
 };
 
-// Of the points of `grey` (CV_8U), whose noise is measured.
-PointAccuracy accuracyIn(const cv::Mat& grey, const PointAccuracyOptions& options);
+// Of the points of `grey` (CV_8U), whose noise is measured where `mask` does not hide it.
+PointAccuracy accuracyIn(const cv::Mat& grey, const PointAccuracyOptions& options, const CameraMask* mask = nullptr);
 
 // Standard deviation of a measurement across its edge, or of a corner-like point across its stronger direction [px].
 double sigmaAcross(bool corner, const PointAccuracy& accuracy);

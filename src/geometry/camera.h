@@ -5,8 +5,11 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 
 namespace edgeslam {
+
+struct CameraMask;
 
 enum class CameraModel { pinhole_radial_tangential, kannala_brandt };
 
@@ -22,8 +25,11 @@ struct Camera {
   std::array<double, 5> distortion{0, 0, 0, 0, 0};  // radial-tangential: k1 k2 p1 p2 k3; Kannala-Brandt: k1 k2 k3 k4 0
   // From the first row's reading to the last one's [s]. 0: a global shutter; negative: rows are read from below.
   double readout_s = 0;
+  // Where its images are not looked at (camera_mask.h); null: nowhere.
+  std::shared_ptr<const CameraMask> mask = nullptr;
 };
 
+// The same calibration. The mask is none of it: a map is good with any.
 inline bool operator==(const Camera& a, const Camera& b) {
   return a.model == b.model && a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy &&
          a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion && a.readout_s == b.readout_s;

@@ -39,7 +39,7 @@ Configuration libraryConfiguration(const std::string& calibration_file, const st
   Configuration configuration = configuration_file.empty() ? Configuration() : readConfiguration(configuration_file);
   if (!calibration_file.empty()) configuration.camera = readCalibration(calibration_file);
   if (configuration.camera) {
-    configuration.camera = withReadout(*configuration.camera, configuration);
+    configuration.camera = asConfigured(*configuration.camera, configuration);
     return configuration;
   }
   throw InputError(configuration_file + ": no calibration: give one (camera.calibration)");

@@ -5,10 +5,14 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "image/hidden_part.h"
+
 namespace edgeslam {
 namespace {
 
 constexpr int parts_across = 4;
+constexpr double slow_sigma = 5;            // of changes of brightness that do not count [px of the thumbnail]
+constexpr double least_seen_share = 0.1;    // of a part that is compared
 constexpr double plain_mean_square = 0.01;  // mean square of a thumbnail that shows nothing [grey^2]
 
 // Sums over the edge points: what cv::HuMoments takes, of points instead of pixels, so that sub-pixel places count.
@@ -61,7 +65,8 @@ int partOf(double x, double y, const cv::Size& size) {
   return cell(y, size.height) * parts_across + cell(x, size.width);
 }
 
-std::array<EdgeSignaturePart, signature_parts> describeParts(const cv::Mat& grey, const EdgeMap& edges) {
+std::array<EdgeSignaturePart, signature_parts> describeParts(const cv::Mat& grey, const EdgeMap& edges,
+                                                             const CameraMask* mask) {
   std::array<EdgeSignaturePart, signature_parts> parts;
   std::array<std::set<int>, signature_parts> chains;
   for (const EdgePoint& point : edges.points) {
@@ -69,8 +74,10 @@ std::array<EdgeSignaturePart, signature_parts> describeParts(const cv::Mat& grey
     parts[part].density += 1;
     chains[part].insert(point.chain);
   }
+  cv::Mat seen;  // empty: all of it
+  if (mask) seen = mask->hidden == 0;
   cv::Scalar mean, deviation;
-  cv::meanStdDev(grey, mean, deviation);
+  cv::meanStdDev(grey, mean, deviation, seen);
   for (int i = 0; i < signature_parts; ++i) {
     const int row = i / parts_across, column = i % parts_across;
     const cv::Range rows(grey.rows * row / parts_across, grey.rows * (row + 1) / parts_across);
@@ -78,20 +85,25 @@ std::array<EdgeSignaturePart, signature_parts> describeParts(const cv::Mat& grey
     EdgeSignaturePart& part = parts[static_cast<std::size_t>(i)];
     part.edges = static_cast<double>(chains[static_cast<std::size_t>(i)].size());
     part.density /= std::max(1, rows.size() * columns.size());
-    part.grey = (cv::mean(grey(rows, columns))[0] - mean[0]) / std::max(1.0, deviation[0]);
+    const cv::Mat seen_of_part = seen.empty() ? seen : seen(rows, columns);
+    part.is_seen = seen.empty() || cv::mean(seen_of_part)[0] > least_seen_share * 255;
+    part.grey = (cv::mean(grey(rows, columns), seen_of_part)[0] - mean[0]) / std::max(1.0, deviation[0]);
   }
   return parts;
 }
 
 // Small, blurred, and with the slow changes of brightness taken out, so that exposure and vignetting do not count.
-cv::Mat makeThumbnail(const cv::Mat& grey) {
+cv::Mat makeThumbnail(const cv::Mat& grey, const CameraMask* mask) {
   const cv::Size size(signature_thumbnail_width, signature_thumbnail_height);
   cv::Mat small, real, slow, fine;
   cv::resize(grey, small, size, 0, 0, cv::INTER_AREA);
   small.convertTo(real, CV_32F);
+  const cv::Mat hidden = mask ? hiddenPart(mask->hidden, size) : cv::Mat();
+  if (mask) fillHidden(hidden, slow_sigma, real);
   cv::GaussianBlur(real, fine, cv::Size(), 0.7);
-  cv::GaussianBlur(real, slow, cv::Size(), 5.0);
+  cv::GaussianBlur(real, slow, cv::Size(), slow_sigma);
   fine -= slow;
+  if (mask) fine.setTo(0, hidden);
   return fine;
 }
 
@@ -114,11 +126,11 @@ double likeness(double a, double b, double variation) {
 
 }  // namespace
 
-EdgeSignature edgeSignature(const cv::Mat& grey, const EdgeMap& edges) {
+EdgeSignature edgeSignature(const cv::Mat& grey, const EdgeMap& edges, const CameraMask* mask) {
   EdgeSignature signature;
   signature.moments = huInvariants(edges);
-  signature.parts = describeParts(grey, edges);
-  signature.thumbnail = makeThumbnail(grey);
+  signature.parts = describeParts(grey, edges, mask);
+  signature.thumbnail = makeThumbnail(grey, mask);
   return signature;
 }
 
@@ -149,15 +161,17 @@ double partVote(const EdgeSignature& a, const EdgeSignature& b, const SignatureO
   }
   const double total = weight[0] + weight[1] + weight[2];
   if (total <= 0) return a.parts[0].edges == b.parts[0].edges && a.parts[0].density == b.parts[0].density ? 1 : 0;
-  int matched = 0;
+  int matched = 0, seen = 0;
   for (std::size_t i = 0; i < signature_parts; ++i) {
+    if (!a.parts[i].is_seen || !b.parts[i].is_seen) continue;
+    ++seen;
     double similarity = 0;
     for (std::size_t v = 0; v < values.size(); ++v) {
       similarity += weight[v] / total * likeness(a.parts[i].*values[v], b.parts[i].*values[v], variation[v]);
     }
     if (similarity > options.part_similarity) ++matched;
   }
-  return static_cast<double>(matched) / signature_parts;
+  return seen > 0 ? static_cast<double>(matched) / seen : 0;
 }
 
 double signatureScore(const EdgeSignature& a, const EdgeSignature& b, const SignatureOptions& options) {

@@ -6,6 +6,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "edges/edge_detection.h"
+#include "geometry/camera_mask.h"
 
 namespace edgeslam {
 
@@ -14,9 +15,10 @@ constexpr int signature_thumbnail_width = 40;  // [px]
 constexpr int signature_thumbnail_height = 30;
 
 struct EdgeSignaturePart {
-  double edges = 0;    // chains that pass through the part
-  double density = 0;  // edge pixels over pixels
-  double grey = 0;     // mean grey value, less the image's mean, over the image's standard deviation
+  double edges = 0;     // chains that pass through the part
+  double density = 0;   // edge pixels over pixels
+  double grey = 0;      // mean grey value, less the image's mean, over the image's standard deviation
+  bool is_seen = true;  // more than a tenth of it is not hidden
 };
 
 struct EdgeSignature {
@@ -31,16 +33,17 @@ struct SignatureOptions {
   double moment_tolerance = 0.5;  // difference of a moment's logarithm at which its similarity is 1/e
 };
 
-// `grey` is CV_8U, `edges` are its edges. An image without edges has moments of 0 and a plain thumbnail.
-EdgeSignature edgeSignature(const cv::Mat& grey, const EdgeMap& edges);
+// `grey` is CV_8U, `edges` are its edges. An image without edges has moments of 0 and a plain thumbnail. What `mask`
+// hides does not count.
+EdgeSignature edgeSignature(const cv::Mat& grey, const EdgeMap& edges, const CameraMask* mask = nullptr);
 
 // Similarity of the moments, in [0, 1]: the mean over the seven of exp(-difference of the logarithms / tolerance), 0
 // for one whose sign differs.
 double momentScore(const EdgeSignature& a, const EdgeSignature& b, const SignatureOptions& options);
 
-// Share of the parts that match their counterpart, in [0, 1]. A part's similarity is the weighted mean of those of its
-// number of edges, density and grey value; the weights adapt to the two images: what varies most over an image's parts
-// tells most.
+// Share of the parts seen that match their counterpart, in [0, 1]. A part's similarity is the weighted mean of those of
+// its number of edges, density and grey value; the weights adapt to the two images: what varies most over an image's
+// parts tells most.
 double partVote(const EdgeSignature& a, const EdgeSignature& b, const SignatureOptions& options);
 
 // The paper's score, in [0, 1]: the mean of the moments' score and the parts' vote.

@@ -6,6 +6,7 @@
 
 #include "flow/patch_alignment.h"
 #include "geometry/angles.h"
+#include "geometry/camera_mask.h"
 #include "tracking/patch_refinement.h"
 
 namespace edgeslam {
@@ -117,7 +118,7 @@ bool findByPatch(const Camera& camera, const Map& map, const PlaceView& from, co
   const Eigen::Vector2d tangent(-predicted.normal.y(), predicted.normal.x());
   if (std::abs(predicted.normal.dot(moved)) > largest_move || std::abs(tangent.dot(moved)) > along_limit) return false;
   predicted.pixel = pixel.cast<double>();
-  return insideImage(camera, predicted.pixel, image_border);
+  return isLookedAt(camera, predicted.pixel, image_border);
 }
 
 GuidedMatches matchGuided(const Camera& camera, const Map& map, const PlaceView& from, const PlaceView& to,
@@ -133,7 +134,7 @@ GuidedMatches matchGuided(const Camera& camera, const Map& map, const PlaceView&
     const PlacePoint& point = from.points[i];
     GuidedMatch match;
     if (!predictMeasurement(camera, to_T_from, point.position, point.measurement, match.measurement)) continue;
-    if (!insideImage(camera, match.measurement.pixel, image_border)) continue;
+    if (!isLookedAt(camera, match.measurement.pixel, image_border)) continue;
     const Eigen::Vector3d ray = point.position - centre;
     if (ray.dot(point.position) < least_cosine * ray.norm() * point.position.norm()) continue;
     ++found.visible;

@@ -133,7 +133,8 @@ void LoopClosing::describeNew(const Map& map) {
     known.frame_index = keyframe.frame_index;
     if (keyframe.images) {
       const cv::Mat& grey = keyframe.images->pyramid.levels[0];
-      known.signature = edgeSignature(grey, detectEdges(grey, reading_.edges));
+      const CameraMask* mask = camera_.mask.get();
+      known.signature = edgeSignature(grey, detectEdges(grey, reading_.edges, mask), mask);
     }
     known_.emplace(keyframe.id, std::move(known));
   }

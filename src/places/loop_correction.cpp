@@ -4,6 +4,7 @@
 
 #include "adjustment/pose_graph.h"
 #include "adjustment/reprojection.h"
+#include "geometry/camera_mask.h"
 #include "geometry/median.h"
 #include "map/worlds.h"
 
@@ -71,7 +72,7 @@ void observeInNeighbour(const Camera& camera, const Map& map, const PlaceView& o
     if (findObservation(neighbour, point.id)) continue;
     Measurement measured;
     if (!predictMeasurement(camera, neighbour_T_old, point.position, point.measurement, measured)) continue;
-    if (!insideImage(camera, measured.pixel, 8)) continue;
+    if (!isLookedAt(camera, measured.pixel, 8)) continue;
     if (!findByPatch(camera, map, old_side, point, neighbour_T_old, *neighbour.images, largest_move, guided,
                      measured)) {
       continue;

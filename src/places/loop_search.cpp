@@ -80,8 +80,8 @@ std::vector<Pose> LoopSearch::starts(KeyframeId keyframe, const std::optional<Si
   std::vector<Pose> poses;
   const auto add = [&](const Pose& candidate_T_start) { poses.push_back(there.world_T_camera * candidate_T_start); };
   if (rough) add(upToScale(*rough).inverse());
-  const ThumbnailMatch match =
-      matchTurned(makeThumbnail(there.images->pyramid), makeThumbnail(map_.keyframes[keyframe].images->pyramid));
+  const auto thumbnailOf = [&](const Keyframe& k) { return makeThumbnail(k.images->pyramid, camera_.mask.get()); };
+  const ThumbnailMatch match = matchTurned(thumbnailOf(there), thumbnailOf(map_.keyframes[keyframe]));
   if (match.correlation < options_.least_correlation) return poses;
   std::vector<double> distances;
   for (const PointObservation& observation : there.observations) {
@@ -100,8 +100,9 @@ std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector
                                           std::string& reason) const {
   const Keyframe& here = map_.keyframes[keyframe];
   const cv::Mat& grey = here.images->pyramid.levels[0];
-  const EdgeMap edges = detectEdges(grey, reading_.edges);
-  SearchedFrame frame{*here.images, edges, accuracyIn(grey, reading_.accuracy)};
+  const CameraMask* mask = camera_.mask.get();
+  const EdgeMap edges = detectEdges(grey, reading_.edges, mask);
+  SearchedFrame frame{*here.images, edges, accuracyIn(grey, reading_.accuracy, mask)};
   frame.accuracy.noise_factor = noiseFactorOf(here, reading_.accuracy);
   std::vector<ScreenedPose> screened;
   for (const Pose& start : starts) {

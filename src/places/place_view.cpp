@@ -6,6 +6,7 @@
 
 #include "adjustment/reprojection.h"
 #include "edges/point_spacing.h"
+#include "geometry/camera_mask.h"
 
 namespace edgeslam {
 namespace {
@@ -88,7 +89,7 @@ PlaceView placeView(const Camera& camera, const Map& map, KeyframeId keyframe, i
       const Eigen::Vector3d there = other_T_world * worldPosition(map, found->second);
       if (!predictMeasurement(camera, camera_T_other, there, observation.measurement, point.measurement)) continue;
       const Eigen::Vector2f pixel = point.measurement.pixel.cast<float>();
-      if (!insideImage(camera, point.measurement.pixel, image_border) || !spacing.isFree(pixel)) continue;
+      if (!isLookedAt(camera, point.measurement.pixel, image_border) || !spacing.isFree(pixel)) continue;
       spacing.add(pixel);
       taken.insert(observation.point);
       view.points.push_back(point);

@@ -55,7 +55,7 @@ void Relocalisation::addKeyframe(const Keyframe& keyframe) {
   }
   KnownKeyframe known;
   known.frame_index = keyframe.frame_index;
-  known.thumbnail = makeThumbnail(pyramid);
+  known.thumbnail = makeThumbnail(pyramid, camera_.mask.get());
   known.described = describeAtTwoSizes(pyramid.levels[0], pixels, 0);
   for (const int index : known.described.points) known.points.push_back(chosen[static_cast<std::size_t>(index)]->point);
   keyframes_[keyframe.id] = std::move(known);
@@ -223,13 +223,13 @@ void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
 RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImages& current, const EdgeMap& edges,
                                                 const std::optional<Reachable>& reachable, double noise_factor) const {
   RelocalisationResult result;
-  const std::vector<Candidate> tried = candidates(map, makeThumbnail(current.pyramid));
+  const std::vector<Candidate> tried = candidates(map, makeThumbnail(current.pyramid, camera_.mask.get()));
   if (tried.empty()) {
     result.reason = "no keyframe looks like this frame";
     return result;
   }
   result.reason = "from no keyframe does the map show in this frame";
-  SearchedFrame frame{current, edges, accuracyIn(current.pyramid.levels[0], accuracy_)};
+  SearchedFrame frame{current, edges, accuracyIn(current.pyramid.levels[0], accuracy_, camera_.mask.get())};
   frame.accuracy.noise_factor = noise_factor;
   searchFrom(startsByTurning(map, tried), map, frame, reachable, result);
   if (result.evidence.visible > 0) return result;  // another start would lead to the same pose

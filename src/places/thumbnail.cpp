@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "geometry/angles.h"
+#include "image/hidden_part.h"
 
 namespace edgeslam {
 namespace {
@@ -82,7 +83,7 @@ Thumbnail turned(const Thumbnail& image, double roll) {
 
 }  // namespace
 
-Thumbnail makeThumbnail(const ImagePyramid& pyramid) {
+Thumbnail makeThumbnail(const ImagePyramid& pyramid, const CameraMask* mask) {
   const cv::Mat& grey = pyramid.levels.front();
   const int height =
       std::max(8, static_cast<int>(std::lround(static_cast<double>(thumbnail_width) * grey.rows / grey.cols)));
@@ -92,9 +93,13 @@ Thumbnail makeThumbnail(const ImagePyramid& pyramid) {
   cv::Mat resized;
   cv::resize(pyramid.levels[level], resized, {thumbnail_width, height}, 0, 0, cv::INTER_AREA);
   resized.convertTo(small, CV_32F);
+  const cv::Mat hidden = mask ? hiddenPart(mask->hidden, small.size()) : cv::Mat();
+  if (mask) fillHidden(hidden, lighting_sigma, small);
   cv::GaussianBlur(small, lighting, {}, lighting_sigma, lighting_sigma, cv::BORDER_REFLECT_101);
   cv::GaussianBlur(small, small, {}, blur_sigma, blur_sigma, cv::BORDER_REFLECT_101);
-  return small - lighting;
+  small -= lighting;
+  if (mask) small.setTo(0, hidden);
+  return small;
 }
 
 ThumbnailMatch matchShifted(const Thumbnail& first, const Thumbnail& second) { return bestShift(first, second, false); }

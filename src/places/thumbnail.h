@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
 
-#include "geometry/camera.h"
+#include "geometry/camera_mask.h"
 #include "image/pyramid.h"
 
 namespace edgeslam {
@@ -14,7 +14,8 @@ constexpr int thumbnail_width = 40;  // [px]
 
 using Thumbnail = cv::Mat;  // CV_32F, thumbnail_width wide, of the image's proportions
 
-Thumbnail makeThumbnail(const ImagePyramid& pyramid);
+// 0, as a plain image would be, where `mask` hides the image.
+Thumbnail makeThumbnail(const ImagePyramid& pyramid, const CameraMask* mask = nullptr);
 
 // How a thumbnail lies on another one: pixel p of the second is seen at centre + turn (p - centre) + shift in the
 // first.

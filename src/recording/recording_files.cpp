@@ -113,14 +113,15 @@ OpenFile& OpenFile::operator=(OpenFile&& other) noexcept {
 }
 
 RecordingFiles::RecordingFiles(const std::string& folder, const std::string& camera, const std::string& configuration,
-                               const std::string& description)
+                               const std::string& description, const std::string& mask)
     : folder_(folder) {
   checkEmpty(folder);
-  const std::vector<FileContent> files{{tum_camera_name, camera},
-                                       {recording_configuration_name, configuration},
-                                       {tum_list_name, "# timestamp filename\n"},
-                                       {recording_decisions_name, ""},
-                                       {recording_description_name, description}};
+  std::vector<FileContent> files{{tum_camera_name, camera},
+                                 {recording_configuration_name, configuration},
+                                 {tum_list_name, "# timestamp filename\n"},
+                                 {recording_decisions_name, ""}};
+  if (!mask.empty()) files.push_back({recording_mask_name, mask});
+  files.push_back({recording_description_name, description});
   const std::vector<fs::path> missing = missingFolders(folder);
   try {
     makeFolder(folder, files, missing);

@@ -30,10 +30,11 @@ class OpenFile {
 // Every function but the constructor answers with what went wrong, path and reason, or an empty text.
 class RecordingFiles {
  public:
-  // Makes the folder with the files that every recording has, confirmed by the disk; recording.txt comes last. Throws
-  // InputError where the folder is there and not empty or where that fails, and then leaves nothing behind.
+  // Makes the folder with the files that every recording has, confirmed by the disk; recording.txt comes last. `mask`:
+  // the content of mask.png; empty: there is none. Throws InputError where the folder is there and not empty or where
+  // that fails, and then leaves nothing behind.
   RecordingFiles(const std::string& folder, const std::string& camera, const std::string& configuration,
-                 const std::string& description);
+                 const std::string& description, const std::string& mask = "");
 
   // Writes a new file of that name into rgb/; the disk begins to take it. Removes it where that fails.
   std::string addFrame(const std::string& name, const std::vector<unsigned char>& content);

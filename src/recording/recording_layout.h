@@ -4,6 +4,7 @@
 //   rgb.txt                       "time-stamp file" a line [s], only files that the disk has confirmed
 //   camera.yaml                   the calibration, as readCalibration reads it
 //   edgeslam.yaml                 the configuration of the run
+//   mask.png                      where the camera's images were not looked at, where the run had a mask
 //   map_at_start.map              the map that the run went on with, where there was one (map/map_file.h)
 //   recording.txt                 versions of the layout and of the program; its presence makes the folder a recording
 //   decisions.txt                 what the live run did with which frame, one line a decision, see Decision
@@ -22,6 +23,7 @@ constexpr int recording_format_version = 1;
 constexpr const char* recording_description_name = "recording.txt";
 constexpr const char* recording_decisions_name = "decisions.txt";
 constexpr const char* recording_configuration_name = "edgeslam.yaml";
+constexpr const char* recording_mask_name = "mask.png";
 constexpr const char* recording_map_name = "map_at_start.map";
 
 // The lines of decisions.txt, in the order in which the run took them:

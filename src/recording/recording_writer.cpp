@@ -8,6 +8,7 @@
 #include "files/text_file.h"
 #include "frames/calibration_file.h"
 #include "frames/frame_encoding.h"
+#include "frames/mask_file.h"
 
 namespace edgeslam {
 namespace {
@@ -44,14 +45,15 @@ void RecordingWriter::open(const std::string& folder, const RecordingDescription
   assert(!files_);
   const std::string camera = formatCalibrationFile(description.camera);
   const std::string program = formatDescription(description.program_version);
-  files_ = std::make_unique<RecordingFiles>(folder, camera, description.configuration, program);
+  const std::string mask = description.camera.mask ? encodeMask(*description.camera.mask) : "";
+  files_ = std::make_unique<RecordingFiles>(folder, camera, description.configuration, program, mask);
   folder_ = folder;
   limits_ = limits;
   size_ = {description.camera.width, description.camera.height};
   status_.recording = true;
   status_.message = "recording to " + folder;
   constexpr std::int64_t folders_and_lists = 4 * block_bytes;
-  status_.bytes = wholeBlocks(camera.size()) + wholeBlocks(program.size()) +
+  status_.bytes = wholeBlocks(camera.size()) + wholeBlocks(program.size()) + wholeBlocks(mask.size()) +
                   wholeBlocks(description.configuration.size()) + folders_and_lists;
 }
 

@@ -17,7 +17,7 @@ namespace edgeslam {
 // What belongs to a recording besides frames and decisions.
 struct RecordingDescription {
   Camera camera;
-  std::string configuration;    // text of the run's configuration file
+  std::string configuration;    // text of the run's configuration file, which names the mask beside it
   std::string program_version;  // one line
 };
 

@@ -109,7 +109,7 @@ void NextRecording::keepMap(const Map& map) {
 std::shared_ptr<FlightRecorder> NextRecording::take() { return std::exchange(recorder_, nullptr); }
 
 std::shared_ptr<FlightRecorder> NextRecording::open(const std::string& folder) const {
-  const RecordingDescription description{camera_, formatConfiguration(configuration_), EDGESLAM_VERSION};
+  const RecordingDescription description{camera_, formatRecordedConfiguration(configuration_), EDGESLAM_VERSION};
   return std::make_shared<FlightRecorder>(folder, description, recordingLimits(configuration_.settings.recording));
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "geometry/camera_mask.h"
+
 namespace edgeslam {
 
 void lockAlongEdges(const Camera& camera, const MapView& view, const MovingCamera& moving,
@@ -20,7 +22,7 @@ void lockAlongEdges(const Camera& camera, const MapView& view, const MovingCamer
     const float along = tangent.dot(projected - track.pixel);
     if (std::abs(along) > static_cast<float>(options.longest_move)) continue;
     const Eigen::Vector2f moved = track.pixel + along * tangent;
-    if (insideImage(camera, moved.cast<double>(), 8)) track.pixel = moved;
+    if (isLookedAt(camera, moved.cast<double>(), 8)) track.pixel = moved;
   }
 }
 

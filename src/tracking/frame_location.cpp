@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/camera_mask.h"
 #include "tracking/measurement_accuracy.h"
 
 namespace edgeslam {
@@ -40,7 +41,12 @@ void describe(const LocationFigures& figures, std::string& reason) {
 }
 
 FrameLocation::FrameLocation(const Camera& camera, const LocationOptions& options)
-    : camera_(camera), options_(options), rotation_grids_(makeRotationGrids(camera)) {}
+    : camera_(camera), options_(options), rotation_grids_(makeRotationGrids(camera)) {
+  if (!camera.mask) return;
+  const cv::Mat& masked = camera.mask->masked;
+  hidden_from_alignment_ = hiddenLevels(masked, options.alignment.coarsest_level + 1, alignment_reach);
+  hidden_from_flow_ = hiddenLevels(masked, options.flow.levels, flowReach(options.flow));
+}
 
 bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const LocationPrior& prior,
                            FollowedFrame& frame, LocationFigures& figures, std::pmr::memory_resource& memory,
@@ -56,7 +62,8 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
 
   // P5, P6
   const Pixels predictions = predictPixels(camera_, points, last.world_T_camera, predicted, &memory);
-  const FlowMatches matches = followPoints(from, to, last.tracks, predictions, options_.flow, &memory);
+  const FlowMatches matches =
+      followPoints(from, to, last.tracks, predictions, options_.flow, &memory, hidden_from_flow_);
   filterTracks(from, to, *frame.edges, last.tracks, matches, options_.flow, frame.tracks, &memory);
   clock.finished(Stage::flow);
 
@@ -128,8 +135,8 @@ Pose FrameLocation::alignImages(const FollowedFrame& last, const AlignmentPoints
   const Pose by_velocity = world_T_predicted.inverse() * last.world_T_camera;
   const Pose by_rotation{alignRotation(camera_, rotation_grids_, from, to, by_velocity.rotation),
                          by_velocity.translation};
-  const Pose to_T_from =
-      alignSparsely(camera_, from, to, points, by_rotation, by_velocity, options_.alignment, &memory);
+  const Pose to_T_from = alignSparsely(camera_, from, to, points, by_rotation, by_velocity, options_.alignment, &memory,
+                                       hidden_from_alignment_);
   return last.world_T_camera * to_T_from.inverse();
 }
 

@@ -9,6 +9,7 @@
 
 #include "edges/point_accuracy.h"
 #include "flow/optical_flow.h"
+#include "image/hidden_levels.h"
 #include "map/map_view.h"
 #include "tracking/edge_lock.h"
 #include "tracking/followed_frame.h"
@@ -77,6 +78,7 @@ class FrameLocation {
   Camera camera_;
   LocationOptions options_;
   std::vector<RotationGrid> rotation_grids_;
+  HiddenLevels hidden_from_alignment_, hidden_from_flow_;
 };
 
 }  // namespace edgeslam

@@ -18,6 +18,7 @@ cv::Mat imageOfASquare(const Camera& camera) {
 
 FramePreparation::FramePreparation(const Camera& camera, const PreparationOptions& options)
     : options_(options),
+      mask_(camera.mask),
       image_pool_([size = cv::Size(camera.width, camera.height), levels = options.pyramid_levels](FrameImages& images) {
         buildPyramid(cv::Mat(size, CV_8U, cv::Scalar(0)), levels, images.pyramid);
       }),
@@ -37,9 +38,9 @@ bool FramePreparation::prepare(std::int64_t frame_index, std::int64_t time_ns, c
   buildPyramid(grey, options_.pyramid_levels, images->pyramid);
   clock.finished(Stage::pyramid);
   if (!frame.edges || frame.edges.use_count() > 1) frame.edges = edge_pool_.take();
-  detectEdges(images->pyramid.levels[0], options_.edges, workspace_, *frame.edges);
+  detectEdges(images->pyramid.levels[0], options_.edges, workspace_, *frame.edges, mask_.get());
   const double noise_factor = accuracy_.noise_factor;
-  accuracy_ = accuracyIn(images->pyramid.levels[0], options_.accuracy);
+  accuracy_ = accuracyIn(images->pyramid.levels[0], options_.accuracy, mask_.get());
   accuracy_.noise_factor = noise_factor;
   clock.finished(Stage::edges);
   frame.tracks.clear();

@@ -42,6 +42,7 @@ class FramePreparation {
 
  private:
   PreparationOptions options_;
+  std::shared_ptr<const CameraMask> mask_;
   RecyclingPool<FrameImages> image_pool_;
   RecyclingPool<EdgeMap> edge_pool_;
   EdgeWorkspace workspace_;

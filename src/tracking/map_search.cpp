@@ -7,6 +7,7 @@
 
 #include "flow/patch_alignment.h"
 #include "geometry/angles.h"
+#include "geometry/camera_mask.h"
 #include "tracking/patch_refinement.h"
 
 namespace edgeslam {
@@ -102,7 +103,7 @@ VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, co
     const Eigen::Vector3d in_camera = camera_T_world * point.position;
     if (!(in_camera.z() > 0.1 * in_camera.norm())) continue;
     const Eigen::Vector2d pixel = projectToRow(camera, moving.twist, in_camera);
-    if (!insideImage(camera, pixel, options.border)) continue;
+    if (!isLookedAt(camera, pixel, options.border)) continue;
     const Eigen::Matrix2f warp =
         keyframeWarp(camera, {camera_T_world * point.world_T_source, point.source_twist, moving.twist},
                      point.source_pixel, from_source.norm());

@@ -62,8 +62,8 @@ struct FoundPoint {
 
 using FoundPoints = std::pmr::vector<FoundPoint>;
 
-// The points that project inside the image, are seen from about the direction and the distance of their keyframe.
-// Whether something stands before them is not known.
+// The points that project inside the image where it is not hidden, are seen from about the direction and the distance
+// of their keyframe. Whether something stands before them is not known.
 VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, const MovingCamera& moving,
                             const MapSearchOptions& options,
                             std::pmr::memory_resource* memory = std::pmr::get_default_resource());

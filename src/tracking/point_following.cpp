@@ -45,6 +45,17 @@ class Occupancy {
   Pixels kept_;
 };
 
+// The number of levels, from the finest on, on which the window sees nothing masked; one at least.
+int clearLevels(const HiddenLevels& hidden, const Eigen::Vector2f& pixel, const Eigen::Vector2f& prediction, int most) {
+  for (int level = 1; level < most; ++level) {
+    const float scale = std::ldexp(1.0F, -level);
+    for (const Eigen::Vector2f& place : {pixel, prediction}) {
+      if (isHiddenAt(hidden, static_cast<std::size_t>(level), scale * place.x(), scale * place.y())) return level;
+    }
+  }
+  return most;
+}
+
 bool insideImage(const cv::Mat& image, const Eigen::Vector2f& pixel, float border) {
   return pixel.x() >= border && pixel.y() >= border && pixel.x() <= static_cast<float>(image.cols - 1) - border &&
          pixel.y() <= static_cast<float>(image.rows - 1) - border;
@@ -104,10 +115,13 @@ double medianDepth(const std::vector<Track>& tracks, const MapView& view, const 
 }
 
 FlowMatches followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,
-                         const Pixels& predictions, const FlowOptions& options, std::pmr::memory_resource* memory) {
+                         const Pixels& predictions, const FlowOptions& options, std::pmr::memory_resource* memory,
+                         const HiddenLevels& hidden) {
   FlowMatches matches(tracks.size(), memory);
+  FlowOptions clear = options;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    matches[i] = followPoint(from.pyramid, to.pyramid, tracks[i].pixel, predictions[i], options);
+    if (!hidden.empty()) clear.levels = clearLevels(hidden, tracks[i].pixel, predictions[i], options.levels);
+    matches[i] = followPoint(from.pyramid, to.pyramid, tracks[i].pixel, predictions[i], clear);
   }
   return matches;
 }
@@ -116,7 +130,7 @@ void filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap&
                   const std::vector<Track>& tracks, const FlowMatches& matches, const FlowOptions& options,
                   std::vector<Track>& kept, std::pmr::memory_resource* memory) {
   const cv::Mat& image = to.pyramid.levels[0];
-  const auto border = static_cast<float>(options.window / 2 + 1);
+  const auto border = static_cast<float>(flowReach(options));
   Occupancy occupancy(image.cols, image.rows, static_cast<float>(options.redundancy), tracks.size(), memory);
   kept.clear();
   for (std::size_t i = 0; i < tracks.size(); ++i) {

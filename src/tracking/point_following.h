@@ -8,6 +8,7 @@
 #include "edges/edge_detection.h"
 #include "flow/optical_flow.h"
 #include "geometry/camera.h"
+#include "image/hidden_levels.h"
 #include "map/map_view.h"
 #include "tracking/sparse_alignment.h"
 #include "tracking/track.h"
@@ -32,12 +33,17 @@ Pixels predictPixels(const Camera& camera, const AlignmentPoints& points, const 
 double medianDepth(const std::vector<Track>& tracks, const MapView& view, const Pose& world_T_camera, double fallback,
                    std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-// One entry a track: the pixel in `to`, or nothing (found false).
+// How far from a track its window reaches [px of the level].
+inline int flowReach(const FlowOptions& options) { return options.window / 2 + 1; }
+
+// One entry a track: the pixel in `to`, or nothing (found false). `hidden`: where windows of that reach see what is
+// masked; on the levels where a track's does it is not followed.
 using FlowMatches = std::pmr::vector<FlowMatch>;
 
 FlowMatches followPoints(const FrameImages& from, const FrameImages& to, const std::vector<Track>& tracks,
                          const Pixels& predictions, const FlowOptions& options,
-                         std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+                         std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
+                         const HiddenLevels& hidden = {});
 
 // P6: keeps the tracks that were found, agree there and back across their edge, lie on an edge of `edges`, and are not
 // too near to an older one, with their new pixels, in place of what is in `kept`.

@@ -3,11 +3,15 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "geometry/camera_mask.h"
 #include "geometry/pose.h"
+#include "image/hidden_levels.h"
 
 namespace edgeslam {
 namespace {
 
+constexpr int coarsest_level = 5, finest_level = 3;
+constexpr int gradient_reach = 1;  // [px of the level]
 constexpr int most_samples = 640;  // of a level: three unknowns need no more
 
 struct Comparison {
@@ -30,6 +34,7 @@ Comparison compare(const Camera& camera, const RotationGrid& grid, const cv::Mat
     const Eigen::Vector2d pixel = project(camera, turned) * scale;
     if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < to.cols - 1 && pixel.y() < to.rows - 1)) continue;
     const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
+    if (!grid.hidden.empty() && grid.hidden.at<unsigned char>(y, x) != 0) continue;
     const double a = pixel.x() - x, b = pixel.y() - y;
     const unsigned char* row = to.ptr(y) + x;
     const unsigned char* below = to.ptr(y + 1) + x;
@@ -57,15 +62,19 @@ Comparison compare(const Camera& camera, const RotationGrid& grid, const cv::Mat
 }  // namespace
 
 std::vector<RotationGrid> makeRotationGrids(const Camera& camera) {
+  HiddenLevels hidden;
+  if (camera.mask) hidden = hiddenLevels(camera.mask->masked, coarsest_level + 1, gradient_reach);
   std::vector<RotationGrid> grids;
-  for (int level = 5; level >= 3; --level) {
+  for (int level = coarsest_level; level >= finest_level; --level) {
     RotationGrid grid;
     grid.level = level;
+    if (static_cast<std::size_t>(level) < hidden.size()) grid.hidden = hidden[static_cast<std::size_t>(level)];
     const int columns = camera.width >> level, rows = camera.height >> level;
     int spacing = 1;
     while (columns * rows > most_samples * spacing * spacing) ++spacing;
     for (int y = 1; y + 1 < rows; y += spacing) {
       for (int x = 1; x + 1 < columns; x += spacing) {
+        if (!grid.hidden.empty() && grid.hidden.at<unsigned char>(y, x) != 0) continue;
         RotationGrid::Sample sample;
         sample.x = x;
         sample.y = y;

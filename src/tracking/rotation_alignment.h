@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
 #include <vector>
 
 #include "geometry/camera.h"
@@ -20,9 +21,10 @@ struct RotationGrid {
   };
   int level = 0;
   std::vector<Sample> samples;
+  cv::Mat hidden;  // CV_8U, of the level's size: not 0 where the camera's mask shows; empty: nowhere
 };
 
-// Grids for levels 5 to 3, some 600 samples each at most.
+// Grids for levels 5 to 3, some 600 samples each at most, where the camera's mask does not show.
 std::vector<RotationGrid> makeRotationGrids(const Camera& camera);
 
 // to_R_from, from `initial`. Returns `initial` where the images cannot be compared.

@@ -23,14 +23,15 @@ struct Patch {
 using Patches = std::pmr::vector<Patch>;
 
 // Of every `stride`-th point.
-void makePatches(const Camera& camera, const cv::Mat& image, int level, const AlignmentPoints& points,
-                 std::size_t stride, Patches& patches) {
+void makePatches(const Camera& camera, const cv::Mat& image, int level, const HiddenLevels& hidden,
+                 const AlignmentPoints& points, std::size_t stride, Patches& patches) {
   const double scale = 1.0 / (1 << level);
   patches.clear();
   for (std::size_t i = 0; i < points.size(); i += stride) {
     const AlignmentPoint& point = points[i];
-    Patch& patch = patches.emplace_back();
     const Eigen::Vector2f pixel = point.pixel * static_cast<float>(scale);
+    if (isHiddenAt(hidden, static_cast<std::size_t>(level), pixel.x(), pixel.y())) continue;
+    Patch& patch = patches.emplace_back();
     if (!makeTemplate(image, pixel, Eigen::Matrix2f::Identity(), side, patch.appearance)) {
       patches.pop_back();
       continue;
@@ -51,8 +52,8 @@ struct Comparison {
   Vector6d right = Vector6d::Zero();
 };
 
-Comparison compare(const Camera& camera, const Patches& patches, const cv::Mat& image, int level, const Pose& to_T_from,
-                   double huber) {
+Comparison compare(const Camera& camera, const Patches& patches, const cv::Mat& image, int level,
+                   const HiddenLevels& hidden, const Pose& to_T_from, double huber) {
   const double scale = 1.0 / (1 << level);
   const Eigen::Matrix3d rotation = to_T_from.rotation.toRotationMatrix();
   Comparison sum;
@@ -61,7 +62,9 @@ Comparison compare(const Camera& camera, const Patches& patches, const cv::Mat& 
     if (moved.z() < 0.05 * patch.position.z()) continue;
     const Eigen::Vector2d pixel = project(camera, moved) * scale;
     if (!(pixel.x() > 0 && pixel.y() > 0 && pixel.x() < image.cols - 1 && pixel.y() < image.rows - 1)) continue;
-    const PatchDifference difference = differenceAt(patch.appearance, image, pixel.cast<float>());
+    const Eigen::Vector2f there = pixel.cast<float>();
+    if (isHiddenAt(hidden, static_cast<std::size_t>(level), there.x(), there.y())) continue;
+    const PatchDifference difference = differenceAt(patch.appearance, image, there);
     const double root = std::sqrt(difference.squares / area);
     const double weight = root > huber ? huber / root : 1.0;
     sum.cost += root > huber ? huber * (2 * root - huber) : root * root;
@@ -77,7 +80,8 @@ Comparison compare(const Camera& camera, const Patches& patches, const cv::Mat& 
 
 Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePyramid& to,
                    const AlignmentPoints& points, const Pose& first_start, const Pose& second_start,
-                   const SparseAlignmentOptions& options, std::pmr::memory_resource* memory) {
+                   const SparseAlignmentOptions& options, std::pmr::memory_resource* memory,
+                   const HiddenLevels& hidden) {
   Pose to_T_from = first_start;
   bool compared = false;
   const auto most = static_cast<std::size_t>(options.most_points);
@@ -87,10 +91,10 @@ Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePy
   for (int level = options.coarsest_level; level >= options.finest_level; --level) {
     const auto index = static_cast<std::size_t>(level);
     if (index >= from.levels.size() || index >= to.levels.size()) continue;
-    makePatches(camera, from.levels[index], level, points, stride, patches);
-    Comparison best = compare(camera, patches, to.levels[index], level, to_T_from, options.huber);
+    makePatches(camera, from.levels[index], level, hidden, points, stride, patches);
+    Comparison best = compare(camera, patches, to.levels[index], level, hidden, to_T_from, options.huber);
     if (!compared) {
-      const Comparison other = compare(camera, patches, to.levels[index], level, second_start, options.huber);
+      const Comparison other = compare(camera, patches, to.levels[index], level, hidden, second_start, options.huber);
       if (other.patches >= 10 && (best.patches < 10 || other.cost < best.cost)) {
         best = other;
         to_T_from = second_start;
@@ -106,7 +110,7 @@ Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePy
       if (!step.allFinite()) break;
       // The template moved by `step` matches the image at the present pose, so the pose takes the inverse of it.
       const Pose next_pose = to_T_from * retract(Pose(), step).inverse();
-      const Comparison next = compare(camera, patches, to.levels[index], level, next_pose, options.huber);
+      const Comparison next = compare(camera, patches, to.levels[index], level, hidden, next_pose, options.huber);
       if (next.patches < 10 || 3 * next.patches < 2 * best.patches || next.cost >= best.cost) break;
       const double gain = best.cost - next.cost;
       to_T_from = next_pose;

@@ -8,6 +8,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/pose.h"
+#include "image/hidden_levels.h"
 #include "image/pyramid.h"
 
 namespace edgeslam {
@@ -27,10 +28,15 @@ struct SparseAlignmentOptions {
   double huber = 12;      // of the grey difference, from where on it counts linearly [grey]
 };
 
-// to_T_from, from the better of the two starts. Returns `first_start` where too few patches can be compared.
+// A patch with its gradients reaches so far around its middle [px of the level].
+constexpr int alignment_reach = 3;
+
+// to_T_from, from the better of the two starts. Returns `first_start` where too few patches can be compared. `hidden`:
+// where patches of that reach see what is masked; they do not count.
 Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePyramid& to,
                    const AlignmentPoints& points, const Pose& first_start, const Pose& second_start,
                    const SparseAlignmentOptions& options,
-                   std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+                   std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
+                   const HiddenLevels& hidden = {});
 
 }  // namespace edgeslam

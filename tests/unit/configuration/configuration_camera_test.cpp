@@ -2,6 +2,7 @@
 
 #include "configuration/configuration.h"
 #include "configuration/configuration_text.h"
+#include "geometry/camera_mask.h"
 #include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
@@ -78,8 +79,8 @@ TEST(ConfigurationCamera, AReadoutByItselfIsOfWhateverCalibrationIsTaken) {
   EXPECT_FALSE(read.camera);
   Camera beside;
   beside.readout_s = 0.01;
-  EXPECT_EQ(withReadout(beside, read).readout_s, 0.02);
-  EXPECT_EQ(withReadout(beside, Configuration()).readout_s, 0.01);
+  EXPECT_EQ(asConfigured(beside, read).readout_s, 0.02);
+  EXPECT_EQ(asConfigured(beside, Configuration()).readout_s, 0.01);
   const Configuration again = configurationOf(formatConfiguration(read));
   EXPECT_FALSE(again.camera);
   EXPECT_EQ(again.readout_s, 0.02);
@@ -181,6 +182,92 @@ TEST(ConfigurationCamera, APlaceOnTheRobotIsReadBackToTheLastBit) {
     const Configuration again = configurationOf(formatConfiguration(first));
     EXPECT_EQ(again.body_T_camera.rotation.coeffs(), first.body_T_camera.rotation.coeffs()) << quaternion;
   }
+}
+
+std::string pgm(int width, int height, int grey) {
+  return "P5\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n" +
+         std::string(static_cast<std::size_t>(width * height / 2), static_cast<char>(grey)) +
+         std::string(static_cast<std::size_t>(width * height / 2), '\0');
+}
+
+// A folder with calibrations of 640 x 480 and 64 x 48 pixels, and masks of both sizes.
+class MaskedCamera : public ::testing::Test {
+ protected:
+  MaskedCamera() {
+    folder_.write("large.yaml", "width: 640\nheight: 480\nfx: 500\nfy: 501\ncx: 320\ncy: 240\n");
+    folder_.write("small.yaml", "width: 64\nheight: 48\nfx: 50\nfy: 50\ncx: 32\ncy: 24\n");
+    folder_.write("masks/large.pgm", pgm(640, 480, 255));
+    folder_.write("masks/small.pgm", pgm(64, 48, 255));
+    folder_.write("masks/black.pgm", pgm(640, 480, 0));
+  }
+  Configuration read(const std::string& text) const { return readConfiguration(folder_.write("file.yaml", text)); }
+  void expectRefused(const std::string& text, const std::string& part) const {
+    try {
+      read(text);
+      ADD_FAILURE() << "not refused: " << text;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(folder_.path("file.yaml") + ":", 0), 0U) << error.what();
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(MaskedCamera, IsReadRelativeToTheFile) {
+  const Configuration found = read("camera: {calibration: large.yaml, mask: masks/large.pgm}\n");
+  ASSERT_TRUE(found.camera->mask);
+  EXPECT_DOUBLE_EQ(maskedShare(*found.camera->mask), 0.5);
+  EXPECT_FALSE(read("camera: {calibration: large.yaml}\n").camera->mask);
+  EXPECT_TRUE(read("camera: {" + calibration + ", mask: masks/large.pgm}\n").camera->mask);
+}
+
+TEST_F(MaskedCamera, AMaskByItselfIsOfWhateverCalibrationIsTaken) {
+  const Configuration found = read("camera: {mask: masks/large.pgm}\n");
+  EXPECT_FALSE(found.camera);
+  Camera beside;
+  beside.width = 640;
+  beside.height = 480;
+  EXPECT_EQ(asConfigured(beside, found).mask, found.mask);
+  beside.width = 320;
+  try {
+    asConfigured(beside, found);
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()), folder_.path("file.yaml") + ": camera.mask: " + found.mask_path +
+                                             " is 640 x 480 pixels, expected the camera's size, 320 x 480");
+  }
+}
+
+TEST_F(MaskedCamera, MayBeIncludedOrIncludeTheCalibration) {
+  folder_.write("base.yaml", "camera: {mask: masks/large.pgm}\n");
+  EXPECT_TRUE(read("include: base.yaml\ncamera: {calibration: large.yaml}\n").camera->mask);
+  folder_.write("base.yaml", "camera: {calibration: large.yaml}\n");
+  EXPECT_TRUE(read("include: base.yaml\ncamera: {mask: masks/large.pgm}\n").camera->mask);
+}
+
+TEST_F(MaskedCamera, TheEffectiveConfigurationNamesIt) {
+  const Configuration found = read("camera: {calibration: large.yaml, mask: masks/large.pgm}\n");
+  const TemporaryFolder elsewhere;
+  const Configuration again = readConfiguration(elsewhere.write("file.yaml", formatConfiguration(found)));
+  EXPECT_EQ(again.mask_path, found.mask_path);
+  ASSERT_TRUE(again.camera->mask);
+  EXPECT_NE(formatRecordedConfiguration(found).find("  mask: mask.png\n"), std::string::npos);
+  EXPECT_EQ(formatConfiguration(read("camera: {calibration: large.yaml}\n")).find("mask"), std::string::npos);
+}
+
+TEST_F(MaskedCamera, WrongMasksAreRefusedByFileLineAndKey) {
+  const std::string camera = "camera:\n  calibration: large.yaml\n  mask: ";
+  expectRefused(camera + "masks/small.pgm\n", ":3: camera.mask: ");
+  expectRefused(camera + "masks/small.pgm\n", "is 64 x 48 pixels, expected the camera's size, 640 x 480");
+  expectRefused(camera + "masks/black.pgm\n", ":3: camera.mask: ");
+  expectRefused(camera + "masks/black.pgm\n", "all of it is black; expected black only where");
+  expectRefused(camera + "masks/none.png\n", "no such file; expected an image of the camera's size");
+  expectRefused(camera + "large.yaml\n", "is no PNG, JPEG, BMP");
+  expectRefused(camera + "\n", "camera.mask: the path of an image is expected");
+  expectRefused(camera + "[a]\n", ":3: camera.mask: the path of an image is expected");
+  folder_.write("base.yaml", "camera: {mask: masks/small.pgm}\n");
+  expectRefused("include: base.yaml\ncamera: {calibration: large.yaml}\n", "camera.mask: ");
 }
 
 }  // namespace

@@ -257,5 +257,25 @@ TEST(NearestEdgePoint, FindsNothingInAnEmptyMapOrAtNoPlace) {
   EXPECT_EQ(nearestEdgePoint(edges, {58.5F, 50}, {-1, 0}, 3, 0.9F), -1) << "a normal the other way is another edge";
 }
 
+// Whatever the robot's body looks like, the edges are those of the rest.
+TEST(EdgeDetection, WhatIsMaskedIsNotLookedAt) {
+  const cv::Size size(320, 240);
+  const cv::Mat scene = withNoise(renderLine(size, lineThrough(150, 120, 20)), 2, 1);
+  cv::Mat mask_image(size, CV_8U, cv::Scalar(255)), other = scene.clone();
+  mask_image.rowRange(0, 90).setTo(0);
+  renderTexture({320, 90}, 3).copyTo(other.rowRange(0, 90));
+  const auto mask = makeCameraMask(mask_image);
+  const EdgeMap all = detectEdges(scene, {}), seen = detectEdges(scene, {}, mask.get());
+  ASSERT_GT(seen.points.size(), 50U);
+  EXPECT_GT(all.points.size(), seen.points.size());
+  for (const EdgePoint& point : seen.points) EXPECT_FALSE(isHidden(mask.get(), point.pixel.cast<double>()));
+  const EdgeMap with_other = detectEdges(other, {}, mask.get());
+  ASSERT_EQ(with_other.points.size(), seen.points.size());
+  for (size_t i = 0; i < seen.points.size(); ++i) {
+    EXPECT_LT((with_other.points[i].pixel - seen.points[i].pixel).norm(), 0.005F);
+    EXPECT_GT(with_other.points[i].normal.dot(seen.points[i].normal), 0.9999F);
+  }
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -54,5 +54,14 @@ TEST(ImageNoise, IsBoundedWhateverTheImage) {
   }
 }
 
+TEST(ImageNoise, WhatIsMaskedDoesNotCount) {
+  cv::Mat image = withNoise(flat(120), 3, 4), mask_image(size, CV_8U, cv::Scalar(255));
+  image.rowRange(0, 150).setTo(7);
+  mask_image.rowRange(0, 150).setTo(0);
+  const auto mask = makeCameraMask(mask_image);
+  EXPECT_LT(gradientNoise(image), 0.1);
+  EXPECT_NEAR(gradientNoise(image, mask.get()) / gradientVariance(3), 1, 0.15);
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -129,5 +129,34 @@ TEST(EdgeSignature, AnImageWithoutEdges) {
   EXPECT_LT(score, 0.3);
 }
 
+TEST(EdgeSignature, WhatIsMaskedDoesNotCount) {
+  const cv::Mat grey = roomImage(0);
+  cv::Mat other = grey.clone(), image(grey.size(), CV_8U, cv::Scalar(255));
+  image.rowRange(0, grey.rows / 4).setTo(0);
+  const auto mask = makeCameraMask(image);
+  cv::randu(other.rowRange(0, grey.rows / 4), 0, 255);
+  const auto signatureWith = [&](const cv::Mat& seen, const CameraMask* m) {
+    return edgeSignature(seen, detectEdges(seen, {}, m), m);
+  };
+  const EdgeSignature a = signatureWith(grey, mask.get()), b = signatureWith(other, mask.get());
+  EXPECT_GT(momentScore(a, b, {}), 0.999);
+  EXPECT_EQ(cv::norm(a.thumbnail, b.thumbnail, cv::NORM_INF), 0);
+  EXPECT_FALSE(a.parts[0].is_seen);
+  EXPECT_TRUE(a.parts[4].is_seen);
+  EXPECT_EQ(partVote(a, b, {}), 1);
+  EXPECT_LT(signatureScore(signatureOf(grey), signatureOf(other), {}), 0.95) << "the case is no test of the mask";
+}
+
+// What every image has alike under the mask does not speak for another place.
+TEST(EdgeSignature, PartsThatAreNotSeenDoNotVote) {
+  EdgeSignature a = signatureOf(roomImage(0)), b = signatureOf(roomImage(1.5));
+  for (std::size_t i = 0; i < 8; ++i) {
+    b.parts[i] = a.parts[i];
+  }
+  const double with_them = partVote(a, b, {});
+  for (std::size_t i = 0; i < 8; ++i) a.parts[i].is_seen = b.parts[i].is_seen = false;
+  EXPECT_LT(partVote(a, b, {}), with_them);
+}
+
 }  // namespace
 }  // namespace edgeslam

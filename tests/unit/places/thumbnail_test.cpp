@@ -60,5 +60,21 @@ INSTANTIATE_TEST_SUITE_P(Turns, ThumbnailTurn,
                                          Eigen::Vector3d(6, 0, 0), Eigen::Vector3d(-6, 0, 0), Eigen::Vector3d(0, 0, 12),
                                          Eigen::Vector3d(0, 0, -18), Eigen::Vector3d(3, 5, -6)));
 
+// Of two rooms seen past the same plate.
+TEST(Thumbnail, WhatIsMaskedDoesNotCount) {
+  const auto at = [](std::uint64_t room, int plate, const CameraMask* mask) {
+    cv::Mat grey = renderRoom(room, placeCamera(), Pose());
+    grey.rowRange(0, grey.rows / 3).setTo(plate);
+    grey(cv::Rect(grey.cols / 3, 0, grey.cols / 3, grey.rows / 4)).setTo(255 - plate);
+    return makeThumbnail(buildPyramid(grey, 4), mask);
+  };
+  cv::Mat image(placeCamera().height, placeCamera().width, CV_8U, cv::Scalar(255));
+  image.rowRange(0, image.rows / 3).setTo(0);
+  const auto mask = makeCameraMask(image);
+  EXPECT_EQ(cv::norm(at(7, 10, mask.get()), at(7, 200, mask.get()), cv::NORM_INF), 0);
+  const auto alike = [&](const CameraMask* m) { return matchShifted(at(7, 10, m), at(8, 10, m)).correlation; };
+  EXPECT_LT(alike(mask.get()), alike(nullptr) - 0.1);
+}
+
 }  // namespace
 }  // namespace edgeslam::test

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "frames/folder_source.h"
+#include "frames/mask_file.h"
 #include "recording/open_frame_source.h"
 #include "unit/recording/made_recording.h"
 
@@ -259,6 +260,18 @@ TEST_F(RecordingSourceTest, ARecordingWithoutFramesIsToldAndItsDecisionsAreStill
   EXPECT_TRUE(recording.frames.empty());
   EXPECT_FALSE(recording.decisions.complete);
   expectInputError([&] { openFrameSource(path_); }, path_, "holds no frames");
+}
+
+TEST_F(RecordingSourceTest, TheMaskIsKeptBesideTheFrames) {
+  const TemporaryFolder folder;
+  cv::Mat image(made_height, made_width, CV_8U, cv::Scalar(255));
+  image.rowRange(0, 5).setTo(0);
+  RecordingDescription description = madeDescription();
+  description.camera.mask = makeCameraMask(image);
+  RecordingWriter().open(folder.path("masked"), description, noLimits());
+  EXPECT_TRUE(same(readMask(folder.path("masked/mask.png"))->masked, description.camera.mask->masked));
+  RecordingWriter().open(folder.path("plain"), madeDescription(), noLimits());
+  EXPECT_FALSE(std::filesystem::exists(folder.path("plain/mask.png")));
 }
 
 }  // namespace

@@ -236,5 +236,25 @@ TEST(PointFollowing, FollowsAPlaneFromOnePoseToTheNext) {
   EXPECT_GT(good, 0.8 * static_cast<double>(matches.size()));
 }
 
+// Below what is masked, the windows of the coarse levels see it; those farther away never do.
+TEST(PointFollowing, TheLevelsThatSeeWhatIsMaskedAreLeftOut) {
+  const Camera camera = smallCamera();
+  const TexturedPlane plane{SmoothTexture(31, 12, 60)};
+  const auto from = imagesOf(plane.render(camera, Pose()));
+  const auto to = imagesOf(plane.render(camera, {Eigen::Quaterniond::Identity(), {0.03, 0, 0}}));
+  cv::Mat masked(camera.height, camera.width, CV_8U, cv::Scalar(0));
+  masked.rowRange(0, 60).setTo(255);
+  const std::vector<Track> tracks{trackAt(0, {160, 70}), trackAt(1, {160, 200})};
+  const Pixels predictions{{157, 70}, {157, 200}};
+  const FlowOptions options;
+  const HiddenLevels hidden = hiddenLevels(masked, options.levels, flowReach(options));
+  const auto matches = followPoints(*from, *to, tracks, predictions, options, std::pmr::get_default_resource(), hidden);
+  FlowOptions finest = options;
+  finest.levels = 1;
+  EXPECT_EQ(matches[0].pixel, followPoint(from->pyramid, to->pyramid, {160, 70}, {157, 70}, finest).pixel);
+  EXPECT_NE(matches[0].pixel, followPoint(from->pyramid, to->pyramid, {160, 70}, {157, 70}, options).pixel);
+  EXPECT_EQ(matches[1].pixel, followPoint(from->pyramid, to->pyramid, {160, 200}, {157, 200}, options).pixel);
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/camera_mask.h"
 #include "geometry/pose.h"
 #include "unit/tracking/textured_plane.h"
 
@@ -49,6 +50,28 @@ TEST(RotationAlignment, AFlatImageLeavesTheStart) {
   const ImagePyramid flat = buildPyramid(cv::Mat(camera.height, camera.width, CV_8U, cv::Scalar(90)), 6);
   const Eigen::Quaterniond start = rotationExp({0.01, 0.02, 0.03});
   EXPECT_EQ(alignRotation(camera, makeRotationGrids(camera), flat, flat, start).coeffs(), start.coeffs());
+}
+
+// A plate of the robot turns with the camera and says that it stands still.
+TEST(RotationAlignment, WhatIsMaskedDoesNotCount) {
+  Camera camera = smallCamera();
+  const Pose turned{rotationExp({0, 0.06, 0}), Eigen::Vector3d::Zero()};
+  const cv::Mat plate = SmoothTexture(9).render({camera.width, 90}, [](const Eigen::Vector2d& p) { return p / 4; });
+  const auto pyramidAt = [&](const Pose& pose) {
+    cv::Mat image = farPlane().render(camera, pose);
+    plate.copyTo(image.rowRange(0, plate.rows));
+    return buildPyramid(image, 6);
+  };
+  const auto error = [&] {
+    const Eigen::Quaterniond start = Eigen::Quaterniond::Identity();
+    const auto found = alignRotation(camera, makeRotationGrids(camera), pyramidAt(Pose()), pyramidAt(turned), start);
+    return rotationAngle(found, turned.rotation.conjugate());
+  };
+  EXPECT_GT(error(), 0.03) << "the case is no test of the mask";
+  cv::Mat mask(camera.height, camera.width, CV_8U, cv::Scalar(255));
+  mask.rowRange(0, plate.rows).setTo(0);
+  camera.mask = makeCameraMask(mask);
+  EXPECT_LT(error(), 0.01);
 }
 
 }  // namespace

@@ -73,5 +73,25 @@ TEST(SparseAlignment, WithTooFewPointsTheFirstStartStands) {
   EXPECT_EQ(found.rotation.coeffs(), start.rotation.coeffs());
 }
 
+// A plate of the robot stays where it is; patches at its border see it in the coarse images.
+TEST(SparseAlignment, PatchesThatSeeWhatIsMaskedDoNotCount) {
+  TwoViews views = viewsAfter({Eigen::Quaterniond::Identity(), {0.06, 0, 0}});
+  cv::Mat masked(views.camera.height, views.camera.width, CV_8U, cv::Scalar(0));
+  masked.colRange(0, 150).setTo(255);
+  const cv::Mat plate =
+      SmoothTexture(9).render({150, views.camera.height}, [](const Eigen::Vector2d& p) { return p / 4; });
+  for (ImagePyramid* pyramid : {&views.from, &views.to}) {
+    cv::Mat image = pyramid->levels[0].clone();
+    plate.copyTo(image.colRange(0, 150));
+    *pyramid = buildPyramid(image, 6);
+  }
+  const auto error = [&](const HiddenLevels& hidden) {
+    return largestError(views, alignSparsely(views.camera, views.from, views.to, views.points, Pose(), Pose(), {},
+                                             std::pmr::get_default_resource(), hidden));
+  };
+  EXPECT_GT(error({}), 3) << "the case is no test of the mask";
+  EXPECT_LT(error(hiddenLevels(masked, 5, alignment_reach)), 1);
+}
+
 }  // namespace
 }  // namespace edgeslam
