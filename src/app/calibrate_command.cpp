@@ -1,7 +1,6 @@
 #include "app/calibrate_command.h"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -9,6 +8,7 @@
 #include "app/calibration_frames.h"
 #include "app/command_line.h"
 #include "app/end_signals.h"
+#include "app/output_file.h"
 #include "app/readout_command.h"
 #include "calibration/board_pdf.h"
 #include "calibration/calibration.h"
@@ -34,13 +34,6 @@ struct BoardOptions {
   double spacing = 0.3;
   bool force = false;
 };
-
-void refuseToReplace(const std::string& path, bool force) {
-  std::error_code error;
-  if (!force && std::filesystem::exists(path, error)) {
-    throw InputError(path + ": is there already; give another --output, or --force to replace it");
-  }
-}
 
 std::string countsText(const SelectionCounts& counts, std::size_t views) {
   std::string text = std::to_string(counts.frames) + " frames, " + std::to_string(counts.looked_at) + " looked at, " +

@@ -171,6 +171,7 @@ class DocumentedCommands(unittest.TestCase):
         for page, markdown in pages().items():
             folder = self.prepared.for_page("configurations/" + page, self.folder.name)
             shutil.copyfile(folder / "cameras/my_camera.yaml", folder / "camera.yaml")
+            write_mask_of((folder / "camera.yaml").read_text(encoding="utf-8"), folder / "mask.png")
             for text in configurations_of(markdown):
                 if text in how_they_run.NO_CONFIGURATIONS:
                     continue
@@ -182,6 +183,13 @@ class DocumentedCommands(unittest.TestCase):
                     self.assertEqual(outcome.returncode, 0, outcome.stdout)
                     checked += 1
         self.assertGreater(checked, 15, "are the configurations still found?")
+
+
+def write_mask_of(calibration, path):
+    """Black in its upper half; what format it is in the file itself says."""
+    width, height = (int(re.search(rf"^{key}: *(\d+)", calibration, re.M).group(1)) for key in ("width", "height"))
+    half = width * (height // 2)
+    path.write_bytes(b"P5\n%d %d\n255\n" % (width, height) + bytes(half) + b"\xff" * (width * height - half))
 
 
 class DocumentedOptions(unittest.TestCase):

@@ -70,6 +70,14 @@ INSTEAD = {
     "edgeslam calibrate --readout RECORDING": Instead(
         PLACEHOLDERS + "; of this one's few frames none tells the readout", ["edgeslam calibrate --readout my_recording"],
         exit_code=1, says="does not tell the readout"),
+    "edgeslam mask RECORDING [--output mask.png] [--force]": Instead(
+        SYNOPSIS + "; this one's few frames show too little", ["edgeslam mask my_recording --output mask.png --force"],
+        exit_code=2, says="the camera hardly moves"),
+    "edgeslam mask my_recording --output mask.png": Instead(
+        "its few frames show too little", ["edgeslam mask my_recording --output mask.png"],
+        exit_code=2, says="the camera hardly moves"),
+    "edgeslam mask my_recording": Instead(
+        "its few frames show too little", ["edgeslam mask my_recording"], exit_code=2, says="the camera hardly moves"),
     "edgeslam check-config FILE | --print-default | --print-expert": Instead(
         SYNOPSIS, ["edgeslam check-config my_robot.yaml", "edgeslam check-config --print-default",
                    "edgeslam check-config --print-expert"]),
