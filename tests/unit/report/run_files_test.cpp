@@ -21,8 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::set<std::string> run_file_names{"trajectory.txt", "trajectory_live.txt", "trajectory_odometry.txt", "frames.csv", "keyframes.txt",
-                                           "map.ply",        "summary.json",        "report.html"};
+const std::set<std::string> run_file_names{"trajectory.txt", "trajectory_live.txt", "trajectory_odometry.txt",
+                                           "frames.csv",     "keyframes.txt",       "map.ply",
+                                           "summary.json",   "report.html"};
 
 class RunFiles : public testing::Test {
  protected:
