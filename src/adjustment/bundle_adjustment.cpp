@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "adjustment/bundle_inertia.h"
 #include "adjustment/bundle_lines.h"
 #include "adjustment/bundle_minimization.h"
 
@@ -31,6 +32,13 @@ bool indicesInRange(const BundleProblem& problem) {
   }
   for (const BundleLineObservation& o : problem.line_observations) {
     if (o.camera < 0 || o.camera >= cameras || o.line < 0 || o.line >= lines) return false;
+  }
+  const auto inRange = [&](int camera) { return camera >= 0 && camera < cameras; };
+  for (const BundleTurn& t : problem.turns) {
+    if (!inRange(t.first) || !inRange(t.second)) return false;
+  }
+  for (const BundleSpeedChange& c : problem.speed_changes) {
+    if (!std::all_of(c.cameras.begin(), c.cameras.end(), inRange)) return false;
   }
   return true;
 }
@@ -77,7 +85,7 @@ double robustCost(const Camera& camera, const BundleProblem& problem, double hub
                   [&](std::size_t, const Eigen::Vector2d* residual, const Matrix23d&, const Eigen::Vector3d&) {
                     cost += 0.5 * huberLoss(residual ? residual->squaredNorm() : behind_norm * behind_norm, huber);
                   });
-  return cost + priorCost(problem) + lineCost(camera, problem, huber);
+  return cost + priorCost(problem) + lineCost(camera, problem, huber) + inertialCost(problem, huber);
 }
 
 // Errors, uncertainties and final cost of a problem as it stands.
@@ -95,7 +103,7 @@ void assess(const Camera& camera, const BundleProblem& problem, double huber, Bu
         information[at(problem.observations[k].point)] +=
             huberWeight(norm, huber) * (by_sight * baseline).squaredNorm();
       });
-  result.final_cost = cost + priorCost(problem) + lineCost(camera, problem, huber);
+  result.final_cost = cost + priorCost(problem) + lineCost(camera, problem, huber) + inertialCost(problem, huber);
   for (std::size_t i = 0; i < problem.points.size(); ++i) {
     const BundlePoint& p = problem.points[i];
     if (usable(p) && p.prior_sigma > 0) information[i] += 1 / (p.prior_sigma * p.prior_sigma);

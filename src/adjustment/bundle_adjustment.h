@@ -1,9 +1,11 @@
 // P19, eq. 1: bundle adjustment of keyframe poses, inverse depths and straight lines. A point is one unknown: its
 // inverse distance rho along the fixed unit bearing in its host camera, X_host = bearing / rho. Residuals are whitened
-// across and along the edge; a line is four unknowns, and what is seen of it has residuals across it.
+// across and along the edge; a line is four unknowns, and what is seen of it has residuals across it. An inertial unit
+// says how cameras turn and how their speed changes.
 // Levenberg-Marquardt's method minimises them with the depths and lines eliminated first, a depth by a division.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <vector>
 
@@ -52,21 +54,48 @@ struct BundleLineObservation {
   double sigma = 0;         // standard deviation across the line [rad]
 };
 
+// What an inertial unit says of two cameras: how the second is turned against the first.
+struct BundleTurn {
+  int first = 0, second = 0;  // cameras
+  Eigen::Quaterniond first_R_second = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();  // of the rotation vector's error, second camera's frame
+};
+
+// What it says of three cameras one after the other: how the mean speed between the last two differs from that between
+// the first two. The unit's own speed, which nothing measures, has dropped out (mapping/inertial_terms.h).
+struct BundleSpeedChange {
+  std::array<int, 3> cameras{};
+  std::array<double, 2> seconds{};                          // from each to the next one
+  Eigen::Vector3d of_first = Eigen::Vector3d::Zero();       // without gravity, first camera's frame [m/s]
+  Eigen::Vector3d of_second = Eigen::Vector3d::Zero();      // likewise, second camera's frame [m/s]
+  Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();  // of the error [s/m], first camera's frame
+};
+
+// What both count with.
+struct BundleInertia {
+  double metres_a_unit = 1;                                // of the map
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();       // world frame [m/s^2]
+  Eigen::Vector3d camera_t_imu = Eigen::Vector3d::Zero();  // place of the unit in the camera's frame [m]
+};
+
 struct BundleProblem {
   std::vector<BundleCamera> cameras;
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;
   std::vector<BundleLine> lines;
   std::vector<BundleLineObservation> line_observations;
+  BundleInertia inertia;
+  std::vector<BundleTurn> turns;
+  std::vector<BundleSpeedChange> speed_changes;
   // Where over 0: the distance of this camera's centre from camera 0's is kept (the gauge of scale when only camera 0
   // is fixed), by scaling all centres and lines about camera 0 and all depths. Ignored where another camera, a point or
-  // a line is fixed, as that holds the scale.
+  // a line is fixed, as that holds the scale. Speed changes then tell how the scale differs from place to place.
   int scale_camera = -1;
 };
 
 struct BundleOptions {
   int iterations = 8;
-  double huber = 2.0;  // whitened, of the norm of an observation's two residuals, or of a line's one
+  double huber = 2.0;  // whitened, of the norm of an observation's two residuals, of a line's one, of inertia's three
 };
 
 struct BundleResult {

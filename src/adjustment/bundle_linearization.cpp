@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adjustment/bundle_inertia.h"
 #include "adjustment/bundle_lines.h"
 
 namespace edgeslam {
@@ -208,7 +209,8 @@ void joinBlocks(const BundleStructure& structure, BundleLinearization& lineariza
 
 }  // namespace
 
-double bundleCost(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber) {
+double bundleCost(const Camera& camera, const BundleProblem& problem, const BundleStructure& structure,
+                  const BundleState& state, double huber) {
   double cost = 0;
   for (std::size_t i = 0; i < structure.points.size(); ++i) {
     const StructuredPoint& point = structure.points[i];
@@ -226,15 +228,16 @@ double bundleCost(const Camera& camera, const BundleStructure& structure, const 
       cost += 0.5 * huberLoss(residual.squaredNorm(), huber);
     }
   }
-  return cost + lineCost(structure, state, huber);
+  return cost + lineCost(structure, state, huber) + inertialCost(problem, structure, state, huber);
 }
 
-void linearizeBundle(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber,
-                     double damping, BundleLinearization& linearization) {
+void linearizeBundle(const Camera& camera, const BundleProblem& problem, const BundleStructure& structure,
+                     const BundleState& state, double huber, double damping, BundleLinearization& linearization) {
   clear(structure, linearization);
   Linearizer linearizer(camera, structure, state, huber, damping, linearization);
   for (std::size_t i = 0; i < structure.points.size(); ++i) linearizer.addPoint(i);
   linearizeLines(structure, state, huber, damping, linearization);
+  linearizeInertia(problem, structure, state, huber, linearization);
   joinBlocks(structure, linearization);
   linearization.gradient += linearization.camera_gradient;
 }

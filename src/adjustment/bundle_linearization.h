@@ -6,7 +6,7 @@
 // X + v + w x (X - o). Then a residual depends on the difference of the host's and the target's twist only, and one
 // derivative serves both. With z = R_h f + rho (c_h - o), the sight changes by rho v + w x z.
 //
-// What is said of lines is in bundle_lines.h.
+// What is said of lines is in bundle_lines.h, and of inertia in bundle_inertia.h.
 #pragma once
 
 #include <vector>
@@ -74,14 +74,15 @@ struct BundleLinearization {
   std::vector<Matrix64d> line_mixed;  // d^2 cost / (d twist d change), for each viewer of each line
 };
 
-// Robust cost (half the sum of Huber's losses, and priors) at a state.
-double bundleCost(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber);
+// Robust cost (half the sum of Huber's losses, and priors) at a state. `problem`: that the structure was made of.
+double bundleCost(const Camera& camera, const BundleProblem& problem, const BundleStructure& structure,
+                  const BundleState& state, double huber);
 
 // Normal equations at a state, weights frozen there; depths and lines are damped by `damping` times their own
 // information.
 // `linearization.origin` is as the caller sets it.
-void linearizeBundle(const Camera& camera, const BundleStructure& structure, const BundleState& state, double huber,
-                     double damping, BundleLinearization& linearization);
+void linearizeBundle(const Camera& camera, const BundleProblem& problem, const BundleStructure& structure,
+                     const BundleState& state, double huber, double damping, BundleLinearization& linearization);
 
 // Change of each point's inverse depth that goes with the twists (6 an unknown).
 void changeDepths(const BundleStructure& structure, const BundleLinearization& linearization,

@@ -86,7 +86,7 @@ int minimizeBundle(const Camera& camera, const BundleProblem& problem, const Bun
   workspace.linearization.origin = meanCentre(workspace.state);
 
   const auto linearizeAt = [&](const BundleState& state, double damping) {
-    linearizeBundle(camera, workspace.structure, state, options.huber, damping, workspace.linearization);
+    linearizeBundle(camera, problem, workspace.structure, state, options.huber, damping, workspace.linearization);
     return workspace.linearization.cost;
   };
   double damping = first_damping, refusal_factor = 2;
@@ -106,7 +106,7 @@ int minimizeBundle(const Camera& camera, const BundleProblem& problem, const Bun
     double new_cost = cost;
     if (solved) {
       moveState(workspace, workspace.candidate);
-      new_cost = last ? bundleCost(camera, workspace.structure, workspace.candidate, options.huber)
+      new_cost = last ? bundleCost(camera, problem, workspace.structure, workspace.candidate, options.huber)
                       : linearizeAt(workspace.candidate, hoped_damping);
     }
     const double gain = cost - new_cost;

@@ -19,6 +19,9 @@ bool takesPart(const BundleProblem& problem, const BundleLineObservation& o) {
   return usable(line) && usable(o) && !(line.fixed && problem.cameras[at(o.camera)].fixed);
 }
 
+std::array<int, 2> camerasOf(const BundleTurn& turn) { return {turn.first, turn.second}; }
+const std::array<int, 3>& camerasOf(const BundleSpeedChange& change) { return change.cameras; }
+
 int landmarkOf(const BundleObservation& o) { return o.point; }
 int landmarkOf(const BundleLineObservation& o) { return o.line; }
 
@@ -139,6 +142,37 @@ void addLine(const Camera& camera, const BundleProblem& problem, int index, Bund
   structure.lines.push_back(line);
 }
 
+// Those that take part: of usable values, and of a free camera.
+template <typename Term>
+void addInertia(const std::vector<Term>& terms, const std::vector<int>& unknown_of_camera,
+                std::vector<StructuredInertia>& structured) {
+  structured.clear();
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (!usable(terms[i])) continue;
+    StructuredInertia inertia;
+    inertia.index = static_cast<int>(i);
+    const auto cameras = camerasOf(terms[i]);
+    bool is_free = false;
+    for (std::size_t k = 0; k < cameras.size(); ++k) {
+      inertia.cameras[k] = cameras[k];
+      inertia.unknowns[k] = unknown_of_camera[at(cameras[k])];
+      is_free |= inertia.unknowns[k] >= 0;
+    }
+    if (is_free) structured.push_back(inertia);
+  }
+}
+
+// Calls function(number of the pair, unknown, unknown) for what both are free.
+template <typename Function>
+void forEachPair(const StructuredInertia& inertia, const Function& function) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column <= row; ++column) {
+      const int a = inertia.unknowns[at(row)], b = inertia.unknowns[at(column)];
+      if (a >= 0 && b >= 0) function(blockOfPair(row, column), std::max(a, b), std::min(a, b));
+    }
+  }
+}
+
 // Of a point or line, with the viewers of its kind.
 template <typename Landmark, typename Function>
 void forEachPair(const Landmark& landmark, const std::vector<int>& viewers, const Function& function) {
@@ -149,7 +183,7 @@ void forEachPair(const Landmark& landmark, const std::vector<int>& viewers, cons
   }
 }
 
-// All blocks of the lower triangle, or those that some point or line asks for.
+// All blocks of the lower triangle, or those that some point, line or inertia asks for.
 void placeBlocks(int most_dense, BundleStructure& structure) {
   const auto unknowns = static_cast<std::int64_t>(structure.camera_of_unknown.size());
   structure.dense = unknowns <= most_dense;
@@ -164,6 +198,11 @@ void placeBlocks(int most_dense, BundleStructure& structure) {
     const auto ask = [&](int row, int column) { pairs.push_back(key(row, column)); };
     for (const StructuredPoint& point : structure.points) forEachPair(point, structure.viewers, ask);
     for (const StructuredLine& line : structure.lines) forEachPair(line, structure.line_viewers, ask);
+    for (const auto* inertia : {&structure.turns, &structure.speed_changes}) {
+      for (const StructuredInertia& term : *inertia) {
+        forEachPair(term, [&](int, int row, int column) { ask(row, column); });
+      }
+    }
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   }
@@ -187,6 +226,11 @@ void placeBlocks(int most_dense, BundleStructure& structure) {
   };
   place(structure.points, structure.viewers, structure.blocks);
   place(structure.lines, structure.line_viewers, structure.line_blocks);
+  for (auto* inertia : {&structure.turns, &structure.speed_changes}) {
+    for (StructuredInertia& term : *inertia) {
+      forEachPair(term, [&](int pair, int row, int column) { term.blocks[at(pair)] = blockAt(row, column); });
+    }
+  }
 }
 
 // False also for what is no number.
@@ -215,6 +259,17 @@ bool usable(const BundleLineObservation& observation) {
          observation.sigma > 0;
 }
 
+bool usable(const BundleTurn& turn) {
+  return turn.first_R_second.coeffs().allFinite() && turn.whitening.allFinite() && turn.first != turn.second;
+}
+
+bool usable(const BundleSpeedChange& change) {
+  return change.of_first.allFinite() && change.of_second.allFinite() && change.whitening.allFinite() &&
+         change.seconds[0] > 0 && change.seconds[1] > 0 && std::isfinite(change.seconds[0] + change.seconds[1]) &&
+         change.cameras[0] != change.cameras[1] && change.cameras[1] != change.cameras[2] &&
+         change.cameras[0] != change.cameras[2];
+}
+
 void structureBundle(const Camera& camera, const BundleProblem& problem, int most_dense, BundleStructure& structure) {
   orderObservations(problem, problem.observations, problem.points.size(), structure.of_points);
   orderObservations(problem, problem.line_observations, problem.lines.size(), structure.of_lines);
@@ -228,6 +283,8 @@ void structureBundle(const Camera& camera, const BundleProblem& problem, int mos
   structure.line_viewers.clear();
   for (std::size_t i = 0; i < problem.points.size(); ++i) addPoint(camera, problem, static_cast<int>(i), structure);
   for (std::size_t i = 0; i < problem.lines.size(); ++i) addLine(camera, problem, static_cast<int>(i), structure);
+  addInertia(problem.turns, structure.unknown_of_camera, structure.turns);
+  addInertia(problem.speed_changes, structure.unknown_of_camera, structure.speed_changes);
   placeBlocks(most_dense, structure);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -49,6 +50,14 @@ struct StructuredLine {
   int first_block = 0;                             // of the lines', see blockOfPair()
 };
 
+// What an inertial unit says of two or three cameras (bundle_inertia.h).
+struct StructuredInertia {
+  int index = 0;                            // in the problem's turns or speed changes
+  std::array<int, 3> cameras{-1, -1, -1};   // -1: there is none
+  std::array<int, 3> unknowns{-1, -1, -1};  // of these; -1: fixed
+  std::array<int, 6> blocks{};              // of their pairs, see blockOfPair(); of free ones alone
+};
+
 // The order of some observations: their indices by what they are of and by camera, equal ones in the order given.
 struct ObservationOrder {
   std::vector<int> first;  // of each point or line in `order`; and one past the last
@@ -68,8 +77,9 @@ struct BundleStructure {
   std::vector<int> blocks;        // block of each pair of viewers of each point
   std::vector<StructuredLine> lines;
   std::vector<StructuredLineObservation> line_observations;
-  std::vector<int> line_viewers;       // as `viewers`, of each line
-  std::vector<int> line_blocks;        // as `blocks`, of each line
+  std::vector<int> line_viewers;  // as `viewers`, of each line
+  std::vector<int> line_blocks;   // as `blocks`, of each line
+  std::vector<StructuredInertia> turns, speed_changes;
   std::vector<int> camera_of_unknown;  // cameras that are free and observed, ascending
   std::vector<BlockPlace> places;      // of each block, by column, then row; all diagonal blocks are there
   bool dense = false;                  // all blocks of the lower triangle are there
@@ -89,6 +99,8 @@ bool usable(const BundlePoint& point);
 bool usable(const Measurement& measurement);
 bool usable(const BundleLine& line);
 bool usable(const BundleLineObservation& observation);
+bool usable(const BundleTurn& turn);
+bool usable(const BundleSpeedChange& change);
 
 // Indices must be in range. Takes out observations without effect (by the point's own host, of or by what is not
 // usable, or where nothing is free), and points and lines that have none left. Up to `most_dense` free cameras the

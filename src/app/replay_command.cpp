@@ -36,6 +36,7 @@ struct ReplayArguments {
   std::string configuration;
   std::string output = "result";
   std::string map_in, map_out;
+  bool imu = false;
   bool realtime = false;
   bool lcm = false;
   double pace = 1;
@@ -61,7 +62,8 @@ RunDescription describe(const ReplayArguments& arguments, const Configuration& c
       "edgeslam replay " + arguments.input +
       (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
       (arguments.map_in.empty() ? "" : " --map-in " + arguments.map_in) +
-      (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) + (arguments.realtime ? " --realtime" : "") +
+      (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) + (arguments.imu ? " --imu" : "") +
+      (arguments.realtime ? " --realtime" : "") +
       (arguments.pace != 1 ? " --pace " + std::to_string(arguments.pace) : "") + (arguments.lcm ? " --lcm" : "") +
       (arguments.record.empty() ? "" : " --record " + arguments.record) + " --output " + arguments.output;
   return description;
@@ -81,7 +83,28 @@ void requireReadoutWithin(const Camera& camera, double frame_interval_s) {
                 camera.readout_s, frame_interval_s));
 }
 
-void processAll(FrameSource& source, const Camera& camera, LockstepRun& run) {
+// Gives a run the samples until a frame's time, and the first after it.
+class InertialFeed {
+ public:
+  InertialFeed(const std::optional<InertialRecording>& recording, LockstepRun& run)
+      : recording_(recording), run_(run) {}
+
+  void giveUntil(std::int64_t frame_ns) {
+    if (!recording_) return;
+    const std::vector<InertialSample>& samples = recording_->samples;
+    const std::int64_t until_ns = frame_ns + recording_->unit.offset_ns;
+    while (next_ < samples.size() && (next_ == 0 || samples[next_ - 1].time_ns < until_ns)) run_.add(samples[next_++]);
+  }
+
+ private:
+  const std::optional<InertialRecording>& recording_;
+  LockstepRun& run_;
+  std::size_t next_ = 0;
+};
+
+void processAll(FrameSource& source, const Camera& camera, const std::optional<InertialRecording>& inertia,
+                LockstepRun& run) {
+  InertialFeed feed(inertia, run);
   ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
@@ -89,6 +112,7 @@ void processAll(FrameSource& source, const Camera& camera, LockstepRun& run) {
     if (count == 2) requireReadoutWithin(camera, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
     const std::string problem = frameProblem(*frame, camera);
     if (!problem.empty()) tellSkipped(frame->index, problem, progress);
+    feed.giveUntil(frame->time_ns);
     const FrameRecord& record = problem.empty() ? run.process(frame->index, frame->time_ns, frame->grey)
                                                 : run.skip(frame->index, frame->time_ns, problem);
     progress.show(record, count, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
@@ -111,7 +135,7 @@ std::string mapToGoOnWith(const ReplayArguments& arguments, const FrameSource& s
 }
 
 Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Settings& settings,
-                          const ReplayArguments& arguments) {
+                          const std::optional<InertialRecording>& inertia, const ReplayArguments& arguments) {
   LockstepRun run(camera, settings, source.size(), arguments.drawings);
   if (const Recording* recording = source.recording()) {
     const Decisions& decisions = recording->decisions;
@@ -119,7 +143,7 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
     if (decisions.not_recorded == 0) run.repeat(runDecisions(decisions));
   }
   if (const std::string map = mapToGoOnWith(arguments, source); !map.empty()) run.goOnWith(loadMap(map, camera));
-  processAll(source, camera, run);
+  processAll(source, camera, inertia, run);
   Replayed replayed;
   replayed.result = run.finish();
   replayed.map = run.map();
@@ -185,17 +209,27 @@ int runReplay(const ReplayArguments& arguments) {
   if (arguments.lcm && !arguments.realtime) {
     throw InputError("--lcm: only what runs live is published, add --realtime");
   }
+  if (arguments.imu && arguments.realtime)
+    throw InputError("--imu: not with --realtime, which runs on the camera alone");
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
-  const Configuration configuration = configurationFor(*source, arguments.configuration);
+  Configuration configuration = configurationFor(*source, arguments.configuration);
   const Camera camera = cameraFor(*source, configuration, arguments.input);
+  std::optional<InertialRecording> inertia;
+  if (arguments.imu) {
+    inertia = readInertialRecording(source->inertialFiles());
+    useInertia(inertia->unit, configuration.settings);
+  } else if (!source->inertialFiles().samples.empty()) {
+    std::cerr << "edgeslam: " << source->inertialFiles().samples << " is not used; --imu uses it\n";
+  }
   std::optional<Trajectory> ground_truth;
   if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
 
   requireWritable(arguments.output);
   if (!arguments.map_out.empty()) requireMapCanBeSaved(arguments.map_out);
   const auto start = std::chrono::steady_clock::now();
-  Replayed replayed = arguments.realtime ? replayInRealTime(*source, camera, configuration, arguments)
-                                         : replayInLockstep(*source, camera, configuration.settings, arguments);
+  Replayed replayed = arguments.realtime
+                          ? replayInRealTime(*source, camera, configuration, arguments)
+                          : replayInLockstep(*source, camera, configuration.settings, inertia, arguments);
   RunResult& result = replayed.result;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (result.unreadable_frames == static_cast<std::int64_t>(result.frames.size())) {
@@ -233,6 +267,10 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   command->add_flag(
       "--realtime", arguments->realtime,
       "Run at the pace of the time stamps, as on the robot; frames that the computer is too slow for are dropped");
+  command->add_flag(
+      "--imu", arguments->imu,
+      "Use the inertial data beside the frames (imu.csv with imu.yaml, or EuRoC's imu0): metres, z up, and "
+      "poses through blur");
   command->add_flag("--lcm", arguments->lcm, "With --realtime: publish over LCM, as `edgeslam run` does");
   command
       ->add_option("--pace", arguments->pace,

@@ -38,6 +38,15 @@ void tellPoses(const RunResult& result, const RunSummary& summary) {
   for (const std::string& event : result.events) std::printf("%s\n", event.c_str());
 }
 
+void tellInertia(const RunResult& result) {
+  const auto known = result.inertia.find(result.main_world);
+  if (known != result.inertia.end()) {
+    std::printf("lengths are metres (+- %.1f %%), and z is up, by inertia\n", 100 * known->second.scale_sigma);
+  } else if (!result.lacking_for_inertia.empty()) {
+    std::printf("lengths are map units: %s\n", result.lacking_for_inertia.c_str());
+  }
+}
+
 void tellError(const Trajectory& estimate, const Trajectory& ground_truth) {
   try {
     const AbsoluteError error = absoluteError(estimate, ground_truth, Alignment::similarity);
@@ -55,6 +64,7 @@ void tellOutcome(const RunResult& result, const std::optional<Trajectory>& groun
   const RunSummary summary = summarise(result, std::nullopt);
   tellPoses(result, summary);
   if (summary.final_poses > 0) {
+    tellInertia(result);
     if (ground_truth) tellError(finalTrajectory(result, result.main_world), *ground_truth);
     if (reportsAreBuiltIn()) {
       std::printf("%s/report.html shows it all\n", output.c_str());

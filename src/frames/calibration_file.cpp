@@ -1,123 +1,22 @@
 #include "frames/calibration_file.h"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "edgeslam/input_error.h"
 #include "files/format_text.h"
-#include "files/key_suggestion.h"
-#include "files/text_file.h"
+#include "frames/yaml_section.h"
 
 namespace edgeslam {
 namespace {
-
-// One map of the file, with what its messages need.
-class Section {
- public:
-  Section(std::string path, const YAML::Node& node) : path_(std::move(path)), node_(node) {
-    if (!node_.IsMap()) fail(node_, "expected 'key: value' lines");
-    for (const auto& entry : node_) {
-      if (!entry.first.IsScalar()) fail(entry.first, "expected a plain key");
-      keys_.push_back(entry.first.Scalar());
-      if (std::count(keys_.begin(), keys_.end(), keys_.back()) > 1) {
-        fail(entry.first, "the key '" + keys_.back() + "' is there twice");
-      }
-    }
-  }
-
-  bool has(const std::string& key) const { return std::find(keys_.begin(), keys_.end(), key) != keys_.end(); }
-
-  void rejectUnknownKeys(const std::vector<std::string>& known) const {
-    for (const auto& entry : node_) {
-      const std::string& key = entry.first.Scalar();
-      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      const std::string meant = closestKey(key, known);
-      fail(entry.first, "unknown key '" + key + "'" + (meant.empty() ? "" : "; is '" + meant + "' meant?"));
-    }
-  }
-
-  YAML::Node at(const std::string& key) const {
-    if (has(key)) return node_[key];
-    const std::string similar = closestKey(key, keys_);
-    throw InputError(path_ + ": the key '" + key + "' is missing" +
-                     (similar.empty() ? "" : "; is '" + similar + "' it, misspelt?"));
-  }
-
-  Section section(const std::string& key) const { return Section(path_, at(key)); }
-
-  std::string text(const std::string& key) const {
-    const YAML::Node value = at(key);
-    if (!value.IsScalar()) fail(value, "'" + key + "' must be a word");
-    return value.Scalar();
-  }
-
-  double number(const std::string& key) const { return toNumber(at(key), key); }
-
-  int wholeNumber(const std::string& key) const { return toWholeNumber(at(key), key); }
-
-  std::vector<double> numbers(const std::string& key) const {
-    const YAML::Node list = at(key);
-    if (!list.IsSequence()) fail(list, "'" + key + "' must be a list of numbers");
-    std::vector<double> values;
-    for (const YAML::Node& value : list) values.push_back(toNumber(value, key));
-    return values;
-  }
-
-  void expectSize(const std::string& key, const std::vector<double>& values,
-                  const std::vector<std::size_t>& sizes) const {
-    if (std::find(sizes.begin(), sizes.end(), values.size()) != sizes.end()) return;
-    std::string expected;
-    for (const std::size_t size : sizes) expected += (expected.empty() ? "" : " or ") + std::to_string(size);
-    fail(at(key), "'" + key + "' must have " + expected + " numbers, it has " + std::to_string(values.size()));
-  }
-
-  [[noreturn]] void failAt(const std::string& key, const std::string& message) const { fail(at(key), message); }
-
- private:
-  [[noreturn]] void fail(const YAML::Node& node, const std::string& message) const {
-    throw InputError(placeInFile(path_, node.Mark().line + 1) + message);
-  }
-
-  // An absent value has the place of what follows it, so its key stands for it.
-  YAML::Node keyNode(const std::string& key) const {
-    for (const auto& entry : node_) {
-      if (entry.first.Scalar() == key) return entry.first;
-    }
-    return node_;
-  }
-
-  double toNumber(const YAML::Node& value, const std::string& key) const {
-    const std::optional<double> number = value.IsScalar() ? parseNumber(value.Scalar()) : std::nullopt;
-    if (!number) {
-      fail(value.IsNull() ? keyNode(key) : value,
-           "'" + key + "' must be a finite number" +
-               (value.IsScalar() ? ", found '" + value.Scalar() + "'" : std::string()));
-    }
-    return *number;
-  }
-
-  int toWholeNumber(const YAML::Node& value, const std::string& key) const {
-    const double number = toNumber(value, key);
-    if (number != std::floor(number) || std::abs(number) > 1e9) fail(value, "'" + key + "' must be a whole number");
-    return static_cast<int>(number);
-  }
-
-  std::string path_;
-  YAML::Node node_;
-  std::vector<std::string> keys_;
-};
 
 // Names of the keys that the values of a camera were read from, for messages.
 struct CameraKeys {
   std::string width, height, fx, fy, cx, cy, distortion;
 };
 
-void checkCamera(const Section& section, const Camera& camera, const CameraKeys& keys) {
+void checkCamera(const YamlSection& section, const Camera& camera, const CameraKeys& keys) {
   if (camera.width < 1 || camera.width > largest_camera_side) {
     section.failAt(keys.width, "the image's width must be 1 to 32768 pixels, it is " + std::to_string(camera.width));
   }
@@ -140,7 +39,7 @@ void checkCamera(const Section& section, const Camera& camera, const CameraKeys&
   }
 }
 
-double readReadout(const Section& section, const std::string& key, double times) {
+double readReadout(const YamlSection& section, const std::string& key, double times) {
   const double readout_s = section.number(key) * times;
   if (std::abs(readout_s) > longest_readout_s) {
     section.failAt(key, "the readout must be -0.2 to 0.2 seconds, from the first row's reading to the last one's");
@@ -148,7 +47,7 @@ double readReadout(const Section& section, const std::string& key, double times)
   return readout_s;
 }
 
-Camera readOwn(const Section& section) {
+Camera readOwn(const YamlSection& section) {
   std::vector<std::string> known{"width", "height", "fx",         "fy",         "cx",           "cy",    "k1",
                                  "k2",    "fps",    "board_cols", "board_rows", "board_square", "model", "readout"};
   Camera camera;
@@ -188,18 +87,18 @@ void setDistortion(Camera& camera, CameraModel model, const std::vector<double>&
   std::copy_n(coefficients.begin(), std::min(coefficients.size(), camera.distortion.size()), camera.distortion.begin());
 }
 
-Camera readRos(const Section& section) {
+Camera readRos(const YamlSection& section) {
   Camera camera;
   camera.width = section.wholeNumber("image_width");
   camera.height = section.wholeNumber("image_height");
-  const Section matrix = section.section("camera_matrix");
+  const YamlSection matrix = section.section("camera_matrix");
   const std::vector<double> k = matrix.numbers("data");
   matrix.expectSize("data", k, {9});
   camera.fx = k[0];
   camera.cx = k[2];
   camera.fy = k[4];
   camera.cy = k[5];
-  const Section coefficients = section.section("distortion_coefficients");
+  const YamlSection coefficients = section.section("distortion_coefficients");
   const std::vector<double> d = coefficients.numbers("data");
   const std::string model = section.text("distortion_model");
   if (model == "plumb_bob") {
@@ -224,7 +123,7 @@ Camera readRos(const Section& section) {
 }
 
 // Kalibr's and EuRoC's files are built alike and differ in names.
-Camera readCalibrationLists(const Section& section, const std::string& coefficients_key,
+Camera readCalibrationLists(const YamlSection& section, const std::string& coefficients_key,
                             const std::string& radial_tangential_name) {
   Camera camera;
   const std::string camera_model = section.text("camera_model");
@@ -261,7 +160,7 @@ Camera readCalibrationLists(const Section& section, const std::string& coefficie
   return camera;
 }
 
-Camera readKalibr(const Section& section) {
+Camera readKalibr(const YamlSection& section) {
   Camera camera = readCalibrationLists(section, "distortion_coeffs", "radtan");
   // [s], from row to row.
   if (section.has("line_delay")) camera.readout_s = readReadout(section, "line_delay", camera.height - 1);
@@ -271,25 +170,14 @@ Camera readKalibr(const Section& section) {
 }  // namespace
 
 Camera readCalibration(const std::string& path) {
-  constexpr std::uintmax_t largest_file = 1 << 20;
-  std::error_code error_code;
-  if (!std::filesystem::is_regular_file(path, error_code)) throw InputError(path + ": no such calibration file");
-  if (std::filesystem::file_size(path, error_code) > largest_file) {
-    throw InputError(path + ": too large for a calibration");
-  }
-  try {
-    const YAML::Node root = YAML::LoadFile(path);
-    const Section section(path, root);
+  return readYaml(path, "calibration", [](const YamlSection& section) {
     if (section.has("cam0")) return readKalibr(section.section("cam0"));
     if (section.has("image_width") || section.has("camera_matrix")) return readRos(section);
     if (section.has("sensor_type") || section.has("intrinsics")) {
       return readCalibrationLists(section, "distortion_coefficients", "radial-tangential");
     }
     return readOwn(section);
-  } catch (const YAML::Exception& error) {
-    const std::string place = error.mark.is_null() ? path + ": " : placeInFile(path, error.mark.line + 1);
-    throw InputError(place + "is not valid YAML: " + error.msg);
-  }
+  });
 }
 
 std::string formatCalibrationFile(const Camera& camera) {

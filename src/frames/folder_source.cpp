@@ -88,6 +88,7 @@ class FolderSource : public FrameSource {
   std::string kind() const override { return kind_; }
   std::optional<Camera> camera() const override { return companions_.camera; }
   std::string groundTruthPath() const override { return companions_.ground_truth_path; }
+  InertialFiles inertialFiles() const override { return companions_.inertial_files; }
 
  private:
   std::string kind_;

@@ -20,6 +20,7 @@ struct FrameCompanions {
   std::optional<Camera> camera;
   std::string camera_path;  // empty where there is no calibration
   std::string ground_truth_path;
+  InertialFiles inertial_files;
 };
 
 // TUM RGB-D's rgb.txt ("time file" a line, seconds) and the associations.txt of TUM and ICL-NUIM, whose four columns

@@ -49,10 +49,25 @@ std::string findCalibration(const std::vector<fs::path>& folders) {
   return "";
 }
 
+// imu.csv and imu.yaml, or EuRoC's imu0, in one of the folders, looked for in order.
+InertialFiles findInertialFiles(const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    const fs::path unit = folder / "imu.yaml";
+    if (isFile(folder / "imu.csv")) return {(folder / "imu.csv").string(), isFile(unit) ? unit.string() : "", ""};
+    const fs::path euroc = folder / "imu0";
+    const fs::path sensor = euroc / "sensor.yaml", camera = folder / "cam0" / "sensor.yaml";
+    if (isFile(euroc / "data.csv") && isFile(sensor) && isFile(camera)) {
+      return {(euroc / "data.csv").string(), sensor.string(), camera.string()};
+    }
+  }
+  return {};
+}
+
 FrameCompanions findCompanions(const std::vector<fs::path>& folders) {
   FrameCompanions companions;
   companions.camera_path = findCalibration(folders);
   if (!companions.camera_path.empty()) companions.camera = readCalibration(companions.camera_path);
+  companions.inertial_files = findInertialFiles(folders);
   for (const fs::path& folder : folders) {
     for (const char* name : {"groundtruth.txt", "state_groundtruth_estimate0/data.csv"}) {
       if (isFile(folder / name) && companions.ground_truth_path.empty()) {

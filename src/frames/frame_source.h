@@ -9,6 +9,7 @@
 #include <string>
 
 #include "edgeslam/input_error.h"
+#include "frames/inertial_file.h"
 #include "geometry/camera.h"
 
 namespace edgeslam {
@@ -36,6 +37,8 @@ class FrameSource {
   // Path of the ground truth beside the frames (groundtruth.txt, EuRoC's state_groundtruth_estimate0/data.csv), or
   // empty.
   virtual std::string groundTruthPath() const = 0;
+  // What an inertial unit measured, beside the frames.
+  virtual InertialFiles inertialFiles() const { return {}; }
   // The live run that these frames were recorded of; null where they are no recording of the flight recorder.
   virtual const Recording* recording() const { return nullptr; }
 };

@@ -128,6 +128,7 @@ class StampedVideoSource : public FrameSource {
   std::string kind() const override { return "video with times.txt"; }
   std::optional<Camera> camera() const override { return companions_.camera; }
   std::string groundTruthPath() const override { return companions_.ground_truth_path; }
+  InertialFiles inertialFiles() const override { return companions_.inertial_files; }
 
  private:
   [[noreturn]] void failOnCounts(std::size_t pictures) const {
@@ -172,6 +173,7 @@ class VideoSource : public FrameSource {
   std::string kind() const override { return "video"; }
   std::optional<Camera> camera() const override { return companions_.camera; }
   std::string groundTruthPath() const override { return companions_.ground_truth_path; }
+  InertialFiles inertialFiles() const override { return companions_.inertial_files; }
 
  private:
   std::int64_t timeOfCurrent(std::int64_t index) const {

@@ -10,6 +10,7 @@
 #include "geometry/rolling_shutter.h"
 #include "geometry/uncertainty.h"
 #include "image/pyramid.h"
+#include "inertia/preintegration.h"
 #include "map/map_line.h"
 
 namespace edgeslam {
@@ -33,6 +34,12 @@ struct PointObservation {
   int chain = -1;          // of the edge on which it was chosen, in the frame where it was chosen
   int order = 0;           // place along that chain
   int straight_edge = -1;  // index of the straight edge of this frame that it lies on; -1: on none, or near its end
+};
+
+// How the inertial unit moved since another keyframe.
+struct InertialLink {
+  KeyframeId from = -1;  // -1: it was not measured all the way
+  PreintegratedMotion motion;
 };
 
 // What a frame on its way to mapping is there for.
@@ -60,6 +67,7 @@ struct TrackedFrame {
   double noise_factor = 1;  // how many times as far as presumed measurements in it err
   int world = 0;            // that its pose is in, or, of a lost frame, that the last pose was in
   std::int64_t start = -1;  // of a frame that helps a start: the first frame that its pose is against
+  InertialLink inertia;     // of a keyframe; of a frame that helps a start, since that start's first frame
 };
 
 struct Keyframe {
@@ -74,6 +82,7 @@ struct Keyframe {
   std::shared_ptr<const FrameImages> images;   // null for a keyframe that no point is hosted in
   std::string reason;
   Matrix7d uncertainty = Matrix7d::Zero();  // against the world's first keyframe (mapping/map_uncertainty.h)
+  InertialLink inertia;                     // from the keyframe before, of the same world
 };
 
 }  // namespace edgeslam

@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
 
 namespace edgeslam {
@@ -24,9 +25,10 @@ struct MapPoint {
 
 struct Map {
   KeyframeTable<Keyframe> keyframes;
-  std::map<PointId, MapPoint> points;  // ordered, so that every sum over them is the same in every run
-  std::map<LineId, MapLine> lines;     // likewise
-  LineId next_line = 0;                // no number is given twice
+  std::map<PointId, MapPoint> points;        // ordered, so that every sum over them is the same in every run
+  std::map<LineId, MapLine> lines;           // likewise
+  LineId next_line = 0;                      // no number is given twice
+  std::map<int, InertialAlignment> inertia;  // by world, where there is an inertial unit
 };
 
 // Position in the world frame.

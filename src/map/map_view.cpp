@@ -19,6 +19,7 @@ void makeFlatView(const TrackedFrame& first, MapView& view) {
   view.version = 0;
   view.corrections = 0;
   view.initialised = false;
+  view.inertia.reset();
   view.keyframes.clear();
   view.points.clear();
   view.origin_frame = first.frame_index;

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
 
 namespace edgeslam {
@@ -38,6 +40,7 @@ struct MapView {
   std::int64_t corrections = 0;    // of the map as a whole: loops, worlds that were joined
   bool initialised = false;        // false: a provisional, flat-depth map from the first frame; poses are not given out
   std::string waiting_for;         // why not, in words that a user understands
+  std::optional<InertialAlignment> inertia;  // of the world, where there is an inertial unit
   KeyframeTable<ViewKeyframe> keyframes;
   std::vector<ViewPoint> points;  // sorted by id
 };

@@ -70,6 +70,7 @@ bool forgetFrom(Map& map, KeyframeId first) {
 
 void forgetWorld(Map& map, int world) {
   for (const KeyframeId id : keyframesOf(map, world)) map.keyframes.erase(id);
+  map.inertia.erase(world);
   forgetWithoutKeyframes(map);
 }
 
@@ -88,6 +89,15 @@ void joinWorlds(const WorldJoin& join, Map& map) {
     keyframe.twist = moved(join.to_S_from, keyframe.twist);
     keyframe.world = join.to;
   }
+  joinInertia(join, map);
+}
+
+void joinInertia(const WorldJoin& join, Map& map) {
+  const auto known = map.inertia.find(join.from);
+  if (known == map.inertia.end()) return;
+  InertialAlignment& older = map.inertia[join.to];
+  if (!older.is_known) older = moved(join.to_S_from, known->second);
+  map.inertia.erase(join.from);
 }
 
 }  // namespace edgeslam

@@ -39,4 +39,7 @@ void forgetWorld(Map& map, int world);
 // Moves the keyframes and points of the younger world into the older.
 void joinWorlds(const WorldJoin& join, Map& map);
 
+// What is known of how the younger world lies to the earth, the older one goes by if nothing is known of it.
+void joinInertia(const WorldJoin& join, Map& map);
+
 }  // namespace edgeslam

@@ -64,6 +64,16 @@ void takeOutOfLines(const Keyframe& keyframe, Map& map) {
   }
 }
 
+// The motion to the next keyframe is now told from the one before.
+void joinLinksOver(const Keyframe& keyframe, Map& map) {
+  for (Keyframe& later : map.keyframes) {
+    InertialLink& link = later.inertia;
+    if (link.from != keyframe.id) continue;
+    link.from = keyframe.inertia.from;
+    if (link.from >= 0) link.motion = joined(keyframe.inertia.motion, link.motion);
+  }
+}
+
 CulledKeyframe takeOut(KeyframeId id, Map& map, Candidates& candidates) {
   const Keyframe& keyframe = map.keyframes[id];
   for (const PointObservation& observation : keyframe.observations) {
@@ -83,6 +93,7 @@ CulledKeyframe takeOut(KeyframeId id, Map& map, Candidates& candidates) {
     views.erase(std::remove(views.begin(), views.end(), id), views.end());
     candidate = views.empty() ? candidates.erase(candidate) : std::next(candidate);
   }
+  joinLinksOver(keyframe, map);
   const Keyframe& kept = map.keyframes[keyframeBefore(map, id)];
   const CulledKeyframe culled{id, kept.id, kept.world_T_camera.inverse() * keyframe.world_T_camera, kept.world};
   map.keyframes.erase(id);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "map/worlds.h"
+
 namespace edgeslam {
 namespace {
 
@@ -20,6 +22,19 @@ void addKeyframe(const TrackedFrame& frame, KeyframeId id, const Pose& pose, con
   map.keyframes.push_back(std::move(keyframe));
 }
 
+// Since the start began; none where it was not measured all the way.
+std::optional<PreintegratedMotion> motionSinceStart(const TrackedFrame& frame) {
+  if (frame.kind == FrameKind::first) return PreintegratedMotion();
+  return frame.inertia.from >= 0 ? std::optional<PreintegratedMotion>(frame.inertia.motion) : std::nullopt;
+}
+
+void linkToLatest(const TrackedFrame& before, const TrackedFrame& frame, Map& map) {
+  const std::optional<PreintegratedMotion> first = motionSinceStart(before), whole = motionSinceStart(frame);
+  if (!first || !whole) return;
+  Keyframe& latest = map.keyframes.back();
+  latest.inertia = {keyframeBefore(map, latest.id), remainder(*whole, *first)};
+}
+
 }  // namespace
 
 Map initialMap(const Camera& camera, const InitialFrames& frames, const InitialStructure& structure,
@@ -28,8 +43,12 @@ Map initialMap(const Camera& camera, const InitialFrames& frames, const InitialS
   const KeyframeId first_id = frames.first.keyframe;
   KeyframeId id = first_id;
   addKeyframe(frames.first, id, Pose(), "first", map);
+  const TrackedFrame* before = &frames.first;
   for (std::size_t k = 0; k < structure.frames.size(); ++k) {
-    addKeyframe(frames.since[structure.frames[k]], ++id, structure.first_T_camera[k], "initialisation", map);
+    const TrackedFrame& frame = frames.since[structure.frames[k]];
+    addKeyframe(frame, ++id, structure.first_T_camera[k], "initialisation", map);
+    linkToLatest(*before, frame, map);
+    before = &frame;
   }
   for (std::size_t i = 0; i < frames.first.observations.size(); ++i) {
     if (!structure.isKnown(i, largest_depth_sigma)) continue;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "map/worlds.h"
+#include "mapping/inertial_terms.h"
 #include "mapping/line_bundle.h"
 #include "mapping/motion_along_lines.h"
 
@@ -98,6 +99,12 @@ std::vector<KeyframeId> allThatSeeTheLines(const LineOptions& options, const Map
   return {all.begin(), all.end()};
 }
 
+// How the keyframe's world lies to the earth; null where that is not known, or there is no unit.
+const InertialAlignment* alignmentOf(const LocalAdjustmentOptions& options, const Map& map, KeyframeId keyframe) {
+  const auto known = map.inertia.find(map.keyframes[keyframe].world);
+  return options.inertia && known != map.inertia.end() ? &known->second : nullptr;
+}
+
 }  // namespace
 
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map) {
@@ -173,6 +180,9 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   }
   const auto indexOf = [&](KeyframeId keyframe) { return camera_of[static_cast<std::size_t>(keyframe)]; };
   addMotionAlongLines(camera, map, lines.lines, indexOf, problem);
+  if (const InertialAlignment* known = alignmentOf(options, map, ordered_free.front())) {
+    addInertialTerms(*options.inertia, *known, map, ordered_free, cameraOf, problem);
+  }
   const BundleResult result = adjustBundle(camera, problem, options.bundle, interrupted);
   if (!result.usable) return false;
 

@@ -3,6 +3,8 @@
 // well together, all that see them are free.
 #pragma once
 
+#include <optional>
+
 #include "adjustment/bundle_adjustment.h"
 #include "geometry/camera.h"
 #include "map/map.h"
@@ -19,6 +21,8 @@ struct LocalAdjustmentOptions {
   double largest_depth_sigma = 0.5;  // points whose depth is less certain than this share of it are taken out
   BundleOptions bundle{8, 2.0};
   LineOptions lines;
+  std::optional<InertialUnit>
+      inertia;  // what it felt between keyframes counts in worlds whose lie to the earth is known
 };
 
 // Adjusts around the latest keyframe; takes out outliers and points that lost their depth. False where the solver

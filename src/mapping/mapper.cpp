@@ -1,6 +1,7 @@
 #include "mapping/mapper.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mapping/line_association.h"
 #include "mapping/line_placement.h"
@@ -135,17 +136,48 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   keyframe.straight_edges = frame.straight_edges;
   keyframe.images = frame.images;
   keyframe.reason = frame.reason;
+  if (frame.inertia.from >= 0 && frame.inertia.from == latestKeyframeOf(map_, world)) keyframe.inertia = frame.inertia;
   map_.keyframes.push_back(std::move(keyframe));
   associate(map_, candidates_);
   addNewPoints(camera_, options_.new_points, map_, candidates_);
   associateLines(camera_, options_.local_adjustment.lines, map_.keyframes.back().id, map_);
   placeLines(camera_, options_.local_adjustment.lines, map_);
   adjustLocally(camera_, options_.local_adjustment, map_);
+  alignToEarth();
   const std::vector<CulledKeyframe> culled = cullKeyframes(options_.culling, map_, candidates_);
   culled_.insert(culled_.end(), culled.begin(), culled.end());
   addUncertainty(camera_, options_.uncertainty, map_);
   ++version_;
   return true;
+}
+
+const InertialAlignment* Mapper::knownAlignment() const {
+  const auto found = map_.inertia.find(world_);
+  return found != map_.inertia.end() && found->second.is_known ? &found->second : nullptr;
+}
+
+// Once its lie is known, the whole world is adjusted by it, in turns with it; from then on the biases are followed,
+// while scale and gravity become known better.
+void Mapper::alignToEarth() {
+  if (!options_.local_adjustment.inertia) return;
+  constexpr int most_rounds = 10;
+  constexpr double settled = 2e-3;  // change of the scale from one round to the next, share of it
+  InertialAlignment& alignment = map_.inertia[world_];
+  const bool was_known = alignment.is_known;
+  for (int round = 0; round < most_rounds; ++round) {
+    InertialAlignment so_far = alignment;
+    so_far.is_known = was_known;
+    const InertialAlignmentEstimate estimate = estimateInertialAlignment(
+        *options_.local_adjustment.inertia, options_.inertial_alignment, map_, world_, so_far);
+    const double before = alignment.metres_a_unit;
+    const bool was_found = alignment.is_known;
+    alignment = estimate.alignment;
+    alignment.is_known |= was_known;
+    lacking_ = alignment.is_known ? "" : estimate.lacking;
+    if (!alignment.is_known || was_known) return;
+    adjustGlobally(camera_, options_.global_adjustment, options_.local_adjustment, map_);
+    if (was_found && std::abs(alignment.metres_a_unit - before) < settled * before) return;
+  }
 }
 
 RecoveryResult Mapper::recover(const TrackedFrame& lost) {

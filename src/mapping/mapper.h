@@ -10,6 +10,7 @@
 #include "map/map_change.h"
 #include "mapping/culling.h"
 #include "mapping/global_adjustment.h"
+#include "mapping/inertial_alignment_estimate.h"
 #include "mapping/initialisation.h"
 #include "mapping/local_adjustment.h"
 #include "mapping/map_uncertainty.h"
@@ -29,6 +30,7 @@ struct MapperOptions {
   RecoveryOptions recovery;
   ViewOptions view;
   MapUncertaintyOptions uncertainty;
+  InertialAlignmentOptions inertial_alignment;  // with local_adjustment.inertia
 };
 
 struct WorldPose {
@@ -82,6 +84,10 @@ class Mapper {
   const std::string& latestDescription() const { return description_; }
   // Where a pose is now that the world it was in may be part of another.
   WorldPose inWorldOfToday(WorldPose pose) const;
+  // How the world that tracking is in lies to the earth; null where that is not known.
+  const InertialAlignment* knownAlignment() const;
+  // Why it is not known how the world lies to the earth; empty where it is, or there is no inertial unit.
+  const std::string& lackingForInertia() const { return lacking_; }
   // Poses of the frames before their maps stood, with the worlds as they are now.
   std::vector<EarlyPose> earlyPoses() const;
 
@@ -100,6 +106,7 @@ class Mapper {
   void stand();
   void makeRoomFor(KeyframeId keyframe);
   bool addKeyframe(const TrackedFrame& frame);
+  void alignToEarth();
 
   Camera camera_;
   MapperOptions options_;
@@ -107,6 +114,7 @@ class Mapper {
   Map map_;
   Candidates candidates_;
   std::string first_description_, description_;
+  std::string lacking_;
   bool initialised_ = false;
   bool start_stood_ = false;  // the latest one
   int world_ = -1;

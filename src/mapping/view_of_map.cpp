@@ -67,6 +67,7 @@ MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options)
   assert(map.keyframes.contains(centre));
   MapView view;
   view.world = map.keyframes[centre].world;
+  if (const auto known = map.inertia.find(view.world); known != map.inertia.end()) view.inertia = known->second;
   for (const Keyframe& keyframe : map.keyframes) {
     if (keyframe.world != view.world) continue;
     view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr, keyframe.uncertainty, keyframe.twist});

@@ -25,6 +25,8 @@ class LockstepRun {
   // The map as it is now; without keyframes where none stands yet.
   const Map& map() const { return mapping_.mapper().map(); }
 
+  // What the inertial unit measured until the next frame, in order; and the first that was measured after it.
+  void add(const InertialSample& sample) { tracking_.add(sample); }
   // The next frame, CV_8U of the camera's size. Returns its record, without the final pose.
   const FrameRecord& process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey);
   // A frame that could not be read.

@@ -1,5 +1,7 @@
 #include "pipeline/mapping_worker.h"
 
+#include "files/format_text.h"
+
 namespace edgeslam {
 
 void MappingWorker::goOnWith(Map map) {
@@ -18,7 +20,7 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
     return nextUpdate();
   }
   const std::size_t worlds_given_up = mapper_.startsGivenUp();
-  const bool was_initialised = mapper_.initialised();
+  const bool was_initialised = mapper_.initialised(), was_metric = mapper_.knownAlignment() != nullptr;
   const bool has_changed = mapper_.add(message.frame);
   if (mapper_.startsGivenUp() > worlds_given_up) first_valid_message_ = message.number;
   if (!has_changed) return std::nullopt;
@@ -26,6 +28,11 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
     report(last_frame_)
         .events.push_back("map " + std::to_string(mapper_.world()) +
                           " begins beside those before: " + mapper_.latestDescription());
+  }
+  if (const InertialAlignment* known = mapper_.knownAlignment(); known && !was_metric) {
+    report(last_frame_)
+        .events.push_back(formatted("the inertial unit tells metres and upright: a map unit is %.3f m +- %.1f %%",
+                                    known->metres_a_unit, 100 * known->scale_sigma));
   }
   if (mapper_.initialised()) {
     new_keyframe_ = true;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pipeline/map_records.h"
+#include "pipeline/metric_result.h"
 
 namespace edgeslam {
 
@@ -115,6 +116,8 @@ RunResult RunRecord::finish(const Mapper& mapper) {
   result_.map_lines = mapLineRecords(map);
   result_.initialisation = mapper.initialisationDescription();
   result_.main_world = mainWorld();
+  result_.lacking_for_inertia = mapper.lackingForInertia();
+  makeMetric(map, result_);
   return std::move(result_);
 }
 

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
 #include "geometry/camera.h"
 #include "geometry/pose.h"
+#include "inertia/inertial_alignment.h"
 #include "pipeline/duration_statistics.h"
 #include "tracking/frame_result.h"
 
@@ -81,7 +83,10 @@ struct RunResult {
   std::vector<KeyframeRecord> keyframes;
   std::vector<MapPointRecord> map_points;
   std::vector<MapLineRecord> map_lines;
-  int main_world = 0;  // the one with most final poses; of several the earliest
+  // Worlds whose lengths are metres and whose z is up, by inertia; and how their map lay to that.
+  std::map<int, InertialAlignment> inertia;
+  std::string lacking_for_inertia;  // why the last world is none of them; empty where it is, or there was no unit
+  int main_world = 0;               // the one with most final poses; of several the earliest
   std::vector<DrawnFrame> drawings;
   std::vector<std::string> events;  // recoveries, relocalisations, loops accepted and refused: "frame 120: ..."
   int recoveries = 0;               // P21

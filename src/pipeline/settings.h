@@ -55,4 +55,10 @@ struct Settings {
   RecordingSpace recording;
 };
 
+// What an inertial unit measures, which is fixed to the camera, is used.
+inline void useInertia(const InertialUnit& unit, Settings& settings) {
+  settings.tracking.inertia = unit;
+  settings.mapping.local_adjustment.inertia = unit;
+}
+
 }  // namespace edgeslam

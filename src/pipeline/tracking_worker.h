@@ -21,6 +21,9 @@ class TrackingWorker {
   // Between two frames. What is left in `update` is of no use any more.
   void take(MapUpdate& update);
 
+  // What the inertial unit measured, in order.
+  void add(const InertialSample& sample) { tracker_.add(sample); }
+
   // The next frame, CV_8U of the camera's size; `messages` gets what mapping is to know, nothing where it is
   // `mapping_busy`, so far behind that it can be told nothing. The result holds until the next frame. Once running,
   // without allocation, lock or system call but reading the clock.

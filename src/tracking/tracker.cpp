@@ -1,6 +1,7 @@
 #include "tracking/tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -67,6 +68,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       preparation_(camera, {edges, points.accuracy, options.blur_gate, pyramidLevels(options)}),
       location_(camera, options.location),
       keyframes_(camera, options.keyframes, points),
+      inertia_(options.inertia),
       noise_(options.noise),
       scratch_memory_(scratch_size),
       scratch_(scratch_memory_.data(), scratch_memory_.size()),
@@ -135,6 +137,7 @@ void Tracker::helpStart(TrackedFrame& for_mapping) {
   }
   keepEdgesOfStart(last_);
   describe(camera_, last_, {kind, keyframe, "first", 1, 0, view_.origin_frame}, for_mapping);
+  for_mapping.inertia = inertia_.linkSinceStart(last_.images->time_ns);
 }
 
 // Long after the last frame that was located its points are not looked for any more.
@@ -144,7 +147,7 @@ bool Tracker::locate(Work& work) {
   const bool regains = lost_since_ns_ >= 0;
   if (regains && static_cast<double>(work.time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds) return false;
   scratch_.release();
-  const LocationPrior prior{motion_.predict(lastCamera(), work.time_ns), regains, preparation_.accuracy(),
+  const LocationPrior prior{predictedCamera(work.time_ns).world_T_camera, regains, preparation_.accuracy(),
                             motion_.whileRowsAreRead(lastCamera(), work.time_ns, mapStands())};
   return location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
 }
@@ -202,6 +205,8 @@ void Tracker::beginWorld() {
   is_lost_ = false;
   lost_since_ns_ = -1;
   last_.forget();
+  inertia_.forget();
+  inertia_.forgetLink();
   keyframes_.beginWorld();
 }
 
@@ -229,6 +234,8 @@ bool Tracker::startMap(const char* reason, Work& work) {
   tracks_at_start_ = frame_.tracks.size();
   faded_frames_ = 0;
   motion_.forget();
+  inertia_.forget();
+  inertia_.beginStart(work.for_mapping.keyframe, work.time_ns);
   std::swap(last_, frame_);
   return true;
 }
@@ -263,6 +270,7 @@ void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& wor
   const KeyframeId id = keyframes_.make(frame, preparation_.accuracy());
   keepStraightEdges(camera_, straight, noise_.factor(), frame, &scratch_);
   describe(camera_, frame, {FrameKind::keyframe, id, reason, noise_.factor(), view_.world}, work.for_mapping);
+  work.for_mapping.inertia = inertia_.linkTo(id, frame.images->time_ns, view_.inertia);
   // Until mapping answers, the keyframe stands where tracking saw it.
   view_.keyframes.push_back({id, frame.world_T_camera, nullptr, Matrix7d::Zero(), frame.twist});
   work.clock.finished(Stage::choice_of_points);
@@ -328,6 +336,8 @@ void Tracker::remember() {
   is_lost_ = false;
   lost_since_ns_ = -1;
   motion_.observe(lastCamera(), {frame_.images->time_ns, frame_.world_T_camera});
+  inertia_.observe({frame_.images->time_ns, frame_.world_T_camera},
+                   std::sqrt(withSharedNoise(frame_.covariance).topLeftCorner<3, 3>().trace() / 3));
   keyframes_.follow(frame_);
   std::swap(last_, frame_);
 }
@@ -343,23 +353,52 @@ void Tracker::skip(std::int64_t frame_index, std::int64_t time_ns, const std::st
 void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult& result) const {
   result.reason = reason;
   if (!last_.isThere() || !mapStands()) return;
+  const InertialPrediction prediction = predictedCamera(time_ns);
   result.state = TrackingState::predicted;
   result.has_pose = true;
   result.world = view_.world;
-  result.world_T_camera = motion_.predict(lastCamera(), time_ns);
+  result.world_T_camera = prediction.world_T_camera;
   tellMotion(result.world_T_camera, result);
-  const double seconds = static_cast<double>(time_ns - last_.images->time_ns) * 1e-9;
-  result.covariance = MotionModel::predictedCovariance(last_.covariance, seconds);
+  result.covariance = prediction.covariance;
   result.world_covariance = worldCovariance(camera_, withSharedNoise(result.covariance), map_covariance_,
                                             last_.outlier_share, options_.uncertainty);
+  goOnByInertia(prediction, result);
+}
+
+// By inertia where it was measured, else as the camera moved on.
+InertialPrediction Tracker::predictedCamera(std::int64_t time_ns) const {
+  const double seconds = static_cast<double>(time_ns - last_.images->time_ns) * 1e-9;
+  const InertialPrediction by_camera{motion_.predict(lastCamera(), time_ns),
+                                     MotionModel::predictedCovariance(last_.covariance, seconds), false};
+  return inertia_.predict(lastCamera(), last_.covariance, time_ns, view_.inertia, by_camera).value_or(by_camera);
+}
+
+// A pose that inertia has measured is as good as its covariance says.
+void Tracker::goOnByInertia(const InertialPrediction& prediction, FrameResult& result) const {
+  if (!prediction.knows_position || view_.keyframes.empty()) return;
+  const InertiaOnlyOptions& options = options_.inertia_only;
+  const double seconds = static_cast<double>(result.time_ns - last_.images->time_ns) * 1e-9;
+  const Matrix6d& covariance = prediction.covariance;
+  if (seconds > options.longest_s ||
+      std::sqrt(covariance.diagonal().head<3>().maxCoeff()) > options.largest_position_deviation * last_.scene_depth ||
+      std::sqrt(covariance.diagonal().tail<3>().maxCoeff()) > options.largest_rotation_deviation) {
+    return;
+  }
+  result.state = TrackingState::tracking;
+  result.reason.insert(0, result.reason.empty() ? "inertia only" : "inertia only: ");
+  result.reference = view_.keyframes.back().id;
+  result.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * result.world_T_camera;
 }
 
 void Tracker::lose(Work& work) {
-  predict(work.time_ns, "", work.result);
-  describe(figures_, work.result.reason);
-  work.result.state = TrackingState::lost;
-  work.result.has_pose = false;
-  work.result.world = -1;
+  scratch_reason_.clear();
+  describe(figures_, scratch_reason_);
+  predict(work.time_ns, scratch_reason_, work.result);
+  if (!isGoodPose(work.result.state)) {
+    work.result.state = TrackingState::lost;
+    work.result.has_pose = false;
+    work.result.world = -1;
+  }
   beLostSince(work.time_ns);
   frame_is_lost_ = is_lost_ = true;
 }
@@ -378,11 +417,13 @@ const EdgeMap* Tracker::latestEdges() const {
 void Tracker::keepLostFrame(TrackedFrame& description) {
   std::swap(kept_, frame_);
   frame_is_lost_ = false;
-  describe(camera_, kept_, {FrameKind::lost, keyframes_.numberOfLost(), "recovery", noise_.factor(), last_world_},
-           description);
+  kept_number_ = keyframes_.numberOfLost();
+  describe(camera_, kept_, {FrameKind::lost, kept_number_, "recovery", noise_.factor(), last_world_}, description);
+  description.inertia = inertia_.linkUpTo(kept_.images->time_ns, view_.inertia);
 }
 
 void Tracker::keepStartingFrame(TrackedFrame& description) {
+  kept_number_ = -1;
   kept_.images = last_.images;
   kept_.edges = last_.edges;
   kept_.tracks.clear();
@@ -403,12 +444,23 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   last_.inlier_count = 0;
   std::swap(view_, view);
   motion_.forget();
+  inertia_.forget();
+  if (view_.keyframes.contains(kept_number_)) inertia_.linkFrom(kept_number_, last_.images->time_ns);
   is_lost_ = false;
   lost_since_ns_ = -1;
   preparation_.forgetSharpness();
   keyframes_.seen(view_.latest_keyframe);
   keyframes_.forgetAverage();
   keyframes_.askForOne(last_);
+}
+
+void Tracker::linkFromLatestKeyframe() {
+  const ViewKeyframe& latest = view_.keyframes.back();
+  if (latest.images) {
+    inertia_.linkFrom(latest.id, latest.images->time_ns);
+  } else {
+    inertia_.forgetLink();
+  }
 }
 
 void Tracker::adopt(MapView& view) {
@@ -428,12 +480,14 @@ void Tracker::adopt(MapView& view) {
   }
   std::swap(view_, view);
   motion_.scale(new_S_old->scale);
+  if (new_S_old->scale != 1) inertia_.forget();
   const Pose moved_pose = moved(*new_S_old, last_.world_T_camera);
   if (is_first) {
     ++worlds_;
     spare_.forget();
     keyframes_.seen(view_.latest_keyframe);
     keyframes_.askForOne(last_);
+    linkFromLatestKeyframe();
   }
   scratch_.release();
   last_.twist = moved(*new_S_old, last_.twist);

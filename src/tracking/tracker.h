@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <memory_resource>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "tracking/frame_location.h"
 #include "tracking/frame_preparation.h"
 #include "tracking/frame_result.h"
+#include "tracking/inertial_motion.h"
 #include "tracking/keyframe_making.h"
 #include "tracking/map_reuse.h"
 #include "tracking/measured_noise.h"
@@ -27,6 +29,13 @@
 #include "tracking/world_uncertainty.h"
 
 namespace edgeslam {
+
+// Frames that show nothing of the map get their poses from inertia for as long as these are known so well.
+struct InertiaOnlyOptions {
+  double longest_s = 2;                      // since a frame was located
+  double largest_position_deviation = 0.1;   // standard deviation, share of the scene's distance
+  double largest_rotation_deviation = 0.05;  // [rad]
+};
 
 struct TrackerOptions {
   BlurGateOptions blur_gate;
@@ -41,6 +50,8 @@ struct TrackerOptions {
   double restart_share = 0.3;   // of the first frame's tracks: fewer left, and the initialisation starts anew ...
   int restart_frames = 4;       // ... after so many such frames: mapping may be about to answer [frames]
   double regain_seconds = 0.7;  // so long after a loss the last tracked frame's points are still looked for
+  std::optional<InertialUnit> inertia;  // that goes with the camera; none: the camera alone
+  InertiaOnlyOptions inertia_only;
   bool worlds_enabled = true;
   double new_world_seconds = 1;  // so long after a loss a new world is begun beside those that were lost
 };
@@ -54,6 +65,9 @@ class Tracker {
   // Before the first frame: a map is there already, and the camera somewhere in it, not known where. Frames are lost
   // until one of them is found in it. New points are numbered from `first_free_point` on.
   void startLost(const MapView& view, PointId first_free_point);
+
+  // What the inertial unit measured, in order; before the frames that were taken until then.
+  void add(const InertialSample& sample) { inertia_.add(sample); }
 
   // `grey`: CV_8U of the camera's size. Frames come in the order of their time stamps. `mapping_busy`: it can be told
   // nothing now, so that this frame becomes no keyframe. `result` is written over. True where mapping is to be told
@@ -125,8 +139,11 @@ class Tracker {
   void tellMotion(const Pose& world_T_camera, FrameResult& result) const;
   Matrix6d withSharedNoise(const Matrix6d& covariance) const;
   void remember();
+  InertialPrediction predictedCamera(std::int64_t time_ns) const;
   void predict(std::int64_t time_ns, std::string_view reason, FrameResult& result) const;
+  void goOnByInertia(const InertialPrediction& prediction, FrameResult& result) const;
   void lose(Work& work);
+  void linkFromLatestKeyframe();
   void beLostSince(std::int64_t time_ns);
 
   Camera camera_;
@@ -136,6 +153,7 @@ class Tracker {
   FrameLocation location_;
   KeyframeMaking keyframes_;
   MotionModel motion_;
+  InertialMotion inertia_;
   MeasuredNoise noise_;
   std::vector<std::byte> scratch_memory_;
   std::pmr::monotonic_buffer_resource scratch_;  // what one frame needs on the way
@@ -144,7 +162,9 @@ class Tracker {
   FollowedFrame frame_;  // the current one
   FollowedFrame last_;   // the last frame that was located
   LocationFigures figures_;
-  FollowedFrame kept_;  // a lost frame that others look for
+  std::string scratch_reason_;
+  FollowedFrame kept_;           // a lost frame that others look for
+  KeyframeId kept_number_ = -1;  // that it gets if it is recovered as a keyframe
   bool frame_is_lost_ = false;
   bool is_lost_ = false;                        // the last frame was, and not merely blurred
   std::int64_t lost_since_ns_ = -1;             // or blurred since; -1: neither

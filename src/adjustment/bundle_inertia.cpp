@@ -1,0 +1,158 @@
+#include "adjustment/bundle_inertia.h"
+
+#include <cmath>
+
+namespace edgeslam {
+namespace {
+
+using Matrix36d = Eigen::Matrix<double, 3, 6>;
+
+// Neighbouring terms share what was measured between them, and an unmodelled error of the unit lasts: a term that errs
+// far says that a camera's pose is wrong as often as that the unit is, so that it is let go late.
+constexpr double huber_times = 3;
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+// Whitened, with the derivatives by the twist of each camera where asked for.
+struct Term {
+  Eigen::Vector3d residual;
+  std::array<Matrix36d, 3> by_twist;
+};
+
+struct CameraAt {
+  Eigen::Quaterniond rotation;
+  Eigen::Vector3d centre;
+};
+
+// The inverse of SO(3)'s right Jacobian at a rotation vector (Sola et al., A micro Lie theory, 2018, eq. 144).
+Eigen::Matrix3d inverseRightJacobian(const Eigen::Vector3d& turn) {
+  const double angle = turn.norm();
+  const Eigen::Matrix3d cross = skew(turn);
+  const double second =
+      angle < 1e-4 ? 1.0 / 12 : 1 / (angle * angle) - (1 + std::cos(angle)) / (2 * angle * std::sin(angle));
+  return Eigen::Matrix3d::Identity() + 0.5 * cross + second * cross * cross;
+}
+
+void evaluate(const BundleTurn& turn, const CameraAt& first, const CameraAt& second, Term& term, bool derivatives) {
+  const Eigen::Quaterniond error = turn.first_R_second.conjugate() * first.rotation.conjugate() * second.rotation;
+  const Eigen::Vector3d error_vector = rotationLog(error.normalized());
+  term.residual = turn.whitening * error_vector;
+  if (!derivatives) return;
+  term.by_twist[1].leftCols<3>().setZero();
+  term.by_twist[1].rightCols<3>() =
+      turn.whitening * inverseRightJacobian(error_vector) * second.rotation.conjugate().toRotationMatrix();
+  term.by_twist[0] = -term.by_twist[1];
+}
+
+void evaluate(const BundleInertia& inertia, const BundleSpeedChange& change, const std::array<CameraAt, 3>& cameras,
+              const Eigen::Vector3d& origin, Term& term, bool derivatives) {
+  const double s = inertia.metres_a_unit, t1 = change.seconds[0], t2 = change.seconds[1];
+  std::array<Eigen::Vector3d, 3> levers;
+  for (std::size_t k = 0; k < 3; ++k) levers[k] = cameras[k].rotation * inertia.camera_t_imu;
+  const auto place = [&](std::size_t k) -> Eigen::Vector3d { return s * cameras[k].centre + levers[k]; };
+  const Eigen::Vector3d first = cameras[0].rotation * change.of_first, second = cameras[1].rotation * change.of_second;
+  // What the first camera sees of the error, so that the whitening is the same however the world is turned.
+  const Eigen::Matrix3d whitening = change.whitening * cameras[0].rotation.conjugate().toRotationMatrix();
+  const Eigen::Vector3d error =
+      (place(2) - place(1)) / t2 - (place(1) - place(0)) / t1 - 0.5 * (t1 + t2) * inertia.gravity - first - second;
+  term.residual = whitening * error;
+  if (!derivatives) return;
+  const std::array<double, 3> weights{1 / t1, -1 / t1 - 1 / t2, 1 / t2};
+  for (std::size_t k = 0; k < 3; ++k) {
+    Matrix36d& by_twist = term.by_twist[k];
+    by_twist.leftCols<3>() = weights[k] * s * Eigen::Matrix3d::Identity();
+    by_twist.rightCols<3>() = -weights[k] * skew(s * (cameras[k].centre - origin) + levers[k]);
+  }
+  term.by_twist[0].rightCols<3>() += skew(first) + skew(error);
+  term.by_twist[1].rightCols<3>() += skew(second);
+  for (Matrix36d& by_twist : term.by_twist) by_twist = whitening * by_twist;
+}
+
+CameraAt cameraAt(const BundleState& state, int camera) {
+  return {state.rotations[at(camera)], state.frames[at(camera)].centre};
+}
+
+CameraAt cameraAt(const BundleProblem& problem, int camera) {
+  const Pose& pose = problem.cameras[at(camera)].world_T_camera;
+  return {pose.rotation, pose.translation};
+}
+
+template <typename Cameras>
+std::array<CameraAt, 3> camerasOf(const BundleSpeedChange& change, const Cameras& cameras) {
+  return {cameraAt(cameras, change.cameras[0]), cameraAt(cameras, change.cameras[1]),
+          cameraAt(cameras, change.cameras[2])};
+}
+
+// Calls function(structured term, evaluated term) for each.
+template <typename Function>
+void forEachTerm(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
+                 const Eigen::Vector3d& origin, bool derivatives, const Function& function) {
+  Term term;
+  for (const StructuredInertia& structured : structure.turns) {
+    const BundleTurn& turn = problem.turns[at(structured.index)];
+    evaluate(turn, cameraAt(state, turn.first), cameraAt(state, turn.second), term, derivatives);
+    function(structured, term);
+  }
+  for (const StructuredInertia& structured : structure.speed_changes) {
+    const BundleSpeedChange& change = problem.speed_changes[at(structured.index)];
+    evaluate(problem.inertia, change, camerasOf(change, state), origin, term, derivatives);
+    function(structured, term);
+  }
+}
+
+void add(const StructuredInertia& structured, const Term& term, double weight, BundleLinearization& linearization) {
+  for (int row = 0; row < 3; ++row) {
+    const int unknown = structured.unknowns[at(row)];
+    if (unknown < 0) continue;
+    const Eigen::Matrix<double, 6, 3> weighted = weight * term.by_twist[at(row)].transpose();
+    linearization.camera_gradient.segment<6>(6 * unknown) += weighted * term.residual;
+    linearization.diagonal[at(unknown)] += weighted * term.by_twist[at(row)];
+    for (int column = 0; column < row; ++column) {
+      const int other = structured.unknowns[at(column)];
+      if (other < 0) continue;
+      Matrix6d block = weighted * term.by_twist[at(column)];
+      if (other > unknown) block.transposeInPlace();
+      linearization.blocks[at(structured.blocks[at(blockOfPair(row, column))])] += block;
+    }
+  }
+}
+
+}  // namespace
+
+double inertialCost(const BundleProblem& problem, double huber) {
+  Term term;
+  double cost = 0;
+  const auto count = [&] { cost += 0.5 * huberLoss(term.residual.squaredNorm(), huber_times * huber); };
+  for (const BundleTurn& turn : problem.turns) {
+    if (!usable(turn)) continue;
+    evaluate(turn, cameraAt(problem, turn.first), cameraAt(problem, turn.second), term, false);
+    count();
+  }
+  for (const BundleSpeedChange& change : problem.speed_changes) {
+    if (!usable(change)) continue;
+    evaluate(problem.inertia, change, camerasOf(change, problem), Eigen::Vector3d::Zero(), term, false);
+    count();
+  }
+  return cost;
+}
+
+double inertialCost(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
+                    double huber) {
+  double cost = 0;
+  forEachTerm(problem, structure, state, Eigen::Vector3d::Zero(), false,
+              [&](const StructuredInertia&, const Term& term) {
+                cost += 0.5 * huberLoss(term.residual.squaredNorm(), huber_times * huber);
+              });
+  return cost;
+}
+
+void linearizeInertia(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
+                      double huber, BundleLinearization& linearization) {
+  forEachTerm(problem, structure, state, linearization.origin, true,
+              [&](const StructuredInertia& structured, const Term& term) {
+                linearization.cost += 0.5 * huberLoss(term.residual.squaredNorm(), huber_times * huber);
+                add(structured, term, huberWeight(term.residual.norm(), huber_times * huber), linearization);
+              });
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,28 @@
+// What a bundle adjustment does with what an inertial unit says of its cameras: their turns, and how their mean speed
+// changes.
+//
+// With P = s c + R t, the unit's place in metres for a camera at c turned by R, and from times and places of three
+// cameras i, j, k the mean speeds V1 = (P_j - P_i) / T1 and V2 = (P_k - P_j) / T2, preintegration
+// (inertia/preintegration.h) says
+//   V2 - V1 = g (T1 + T2) / 2 + R_i of_first + R_j of_second,
+// where of_first is the change of speed over T1 less the mean speed that it makes, and of_second the mean speed that
+// what happens in T2 makes. The speed itself has dropped out, so that it is no unknown (Lupton and Sukkarieh, 2012,
+// and Mur-Artal and Tardos, 2017, eliminate it likewise to find the scale).
+//
+// Cameras' motions are twists [v; w] about the common origin o, as in bundle_linearization.h.
+#pragma once
+
+#include "adjustment/bundle_linearization.h"
+
+namespace edgeslam {
+
+// Inertia's part of the robust cost, of a problem as it stands and at a state.
+double inertialCost(const BundleProblem& problem, double huber);
+double inertialCost(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
+                    double huber);
+
+// Adds inertia to normal equations whose blocks of pairs are not joined yet.
+void linearizeInertia(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
+                      double huber, BundleLinearization& linearization);
+
+}  // namespace edgeslam

@@ -1,0 +1,32 @@
+// How a map lies to the earth, by what an inertial unit felt while the map was made.
+#pragma once
+
+#include "geometry/similarity.h"
+#include "inertia/inertial_unit.h"
+
+namespace edgeslam {
+
+struct InertialAlignment {
+  InertialBias bias;                                  // of the unit, lately
+  double rate_bias_sigma = 0.1;                       // standard deviation, each axis [rad/s]
+  bool is_known = false;                              // else all that follows means nothing
+  double metres_a_unit = 1;                           // of the map
+  double scale_sigma = 0;                             // standard deviation of it, share of it
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // the map's frame [m/s^2], standard_gravity long
+  double force_bias_sigma = 0;                        // standard deviation, each axis [m/s^2]
+};
+
+// Turns the map's frame so that z is up, about the horizontal axis that does it with the least turn.
+inline Eigen::Quaterniond uprightRotation(const InertialAlignment& alignment) {
+  return Eigen::Quaterniond::FromTwoVectors(-alignment.gravity, Eigen::Vector3d::UnitZ());
+}
+
+// The same of a map that was moved.
+inline InertialAlignment moved(const Similarity& new_S_old, const InertialAlignment& alignment) {
+  InertialAlignment now = alignment;
+  now.metres_a_unit /= new_S_old.scale;
+  now.gravity = new_S_old.rotation * alignment.gravity;
+  return now;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,208 @@
+// What an inertial unit says in a bundle adjustment: derivatives, the scale that it holds, and values of no use.
+#include "adjustment/bundle_inertia.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "synthetic_bundle.h"
+
+namespace edgeslam::test {
+namespace {
+
+constexpr double huber = 2;
+
+Eigen::Matrix3d someWhitening(Random& random, double information) {
+  Eigen::Matrix3d whitening = Eigen::Matrix3d::Zero();
+  for (int row = 0; row < 3; ++row) {
+    whitening(row, row) = information * uniform(random, 0.5, 1.5);
+    for (int column = 0; column < row; ++column) whitening(row, column) = information * uniform(random, -0.3, 0.3);
+  }
+  return whitening;
+}
+
+// What a unit would say of all cameras of a problem, in order.
+void addInertia(Random& random, double turn_information, double speed_information, BundleProblem& problem) {
+  problem.inertia = {2.5, {1, -9.5, 2}, {0.1, -0.2, 0.05}};
+  const auto pose = [&](std::size_t c) { return problem.cameras[c].world_T_camera; };
+  const auto place = [&](std::size_t c) -> Eigen::Vector3d {
+    return problem.inertia.metres_a_unit * pose(c).translation + pose(c).rotation * problem.inertia.camera_t_imu;
+  };
+  for (std::size_t c = 1; c < problem.cameras.size(); ++c) {
+    const int now = static_cast<int>(c);
+    problem.turns.push_back(
+        {now - 1, now, pose(c - 1).rotation.conjugate() * pose(c).rotation, someWhitening(random, turn_information)});
+    if (c < 2) continue;
+    BundleSpeedChange change;
+    change.cameras = {now - 2, now - 1, now};
+    change.seconds = {uniform(random, 0.2, 0.6), uniform(random, 0.2, 0.6)};
+    const double t1 = change.seconds[0], t2 = change.seconds[1];
+    const Eigen::Vector3d difference =
+        (place(c) - place(c - 1)) / t2 - (place(c - 1) - place(c - 2)) / t1 - 0.5 * (t1 + t2) * problem.inertia.gravity;
+    change.of_second = uniformVector(random, 1);
+    change.of_first = pose(c - 2).rotation.conjugate() * (difference - pose(c - 1).rotation * change.of_second);
+    change.whitening = someWhitening(random, speed_information);
+    problem.speed_changes.push_back(change);
+  }
+}
+
+BundleScene sceneWithInertia(Random& random, int cameras, int fixed, double turn_information = 300) {
+  BundleSceneOptions options;
+  options.cameras = cameras;
+  options.fixed = fixed;
+  BundleScene scene = makeBundleScene(random, options);
+  addInertia(random, turn_information, 50, scene.truth);
+  return scene;
+}
+
+TEST(BundleInertia, CostsNothingAtTheTruth) {
+  Random random(1);
+  const BundleScene scene = sceneWithInertia(random, 6, 1);
+  EXPECT_EQ(scene.truth.turns.size(), 5U);
+  EXPECT_EQ(scene.truth.speed_changes.size(), 4U);
+  EXPECT_LT(inertialCost(scene.truth, huber), 1e-16);
+}
+
+// With all blocks of the reduced system, and with those that are asked for.
+class BundleInertiaOf : public testing::TestWithParam<int> {};
+
+TEST_P(BundleInertiaOf, DerivativesAreTheNumericOnes) {
+  Random random(2);
+  const BundleScene scene = sceneWithInertia(random, 6, 1);
+  BundleProblem problem = perturbedProblem(random, scene.truth, 0.005, 0.003);
+  BundleStructure structure;
+  structureBundle(scene.camera, problem, GetParam(), structure);
+  BundleState state;
+  for (const BundleCamera& c : problem.cameras) {
+    state.rotations.push_back(c.world_T_camera.rotation);
+    state.frames.push_back(cameraFrame(c.world_T_camera));
+  }
+  ASSERT_GT(inertialCost(problem, structure, state, 1e3), 1);
+  EXPECT_NEAR(inertialCost(problem, structure, state, huber), inertialCost(problem, huber), 1e-9);
+
+  const auto unknowns = static_cast<Eigen::Index>(structure.camera_of_unknown.size());
+  ASSERT_EQ(unknowns, 5);
+  const auto linearized = [&](double with_huber) {
+    BundleLinearization made;
+    made.origin = {0.3, -0.2, 0.5};
+    made.blocks.assign(structure.places.size(), Matrix6d::Zero());
+    made.diagonal.assign(static_cast<std::size_t>(unknowns), Matrix6d::Zero());
+    made.camera_gradient.setZero(6 * unknowns);
+    linearizeInertia(problem, structure, state, with_huber, made);
+    return made;
+  };
+  const auto costOf = [&](const Eigen::VectorXd& twists, double with_huber) {
+    BundleState moved = state;
+    for (Eigen::Index k = 0; k < unknowns; ++k) {
+      const auto c = static_cast<std::size_t>(structure.camera_of_unknown[static_cast<std::size_t>(k)]);
+      const Vector6d twist = twists.segment<6>(6 * k);
+      const Eigen::Vector3d lever = state.frames[c].centre - Eigen::Vector3d(0.3, -0.2, 0.5);
+      moved.rotations[c] = rotationExp(twist.tail<3>()) * state.rotations[c];
+      moved.frames[c].centre += twist.head<3>() + twist.tail<3>().cross(lever);
+    }
+    return inertialCost(problem, structure, moved, with_huber);
+  };
+  for (const double with_huber : {huber, 1e3}) {
+    const BundleLinearization made = linearized(with_huber);
+    for (Eigen::Index k = 0; k < 6 * unknowns; ++k) {
+      constexpr double step = 1e-6;
+      const Eigen::VectorXd change = step * Eigen::VectorXd::Unit(6 * unknowns, k);
+      const double numeric = (costOf(change, with_huber) - costOf(-change, with_huber)) / (2 * step);
+      EXPECT_NEAR(made.camera_gradient(k), numeric, 1e-4 * std::max(1.0, made.camera_gradient.norm())) << k;
+    }
+  }
+  // Where all is explained, the curvature is that of the normal equations.
+  problem = scene.truth;
+  for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
+    state.rotations[c] = problem.cameras[c].world_T_camera.rotation;
+    state.frames[c] = cameraFrame(problem.cameras[c].world_T_camera);
+  }
+  const BundleLinearization made = linearized(1e3);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(6 * unknowns, 6 * unknowns);
+  for (std::size_t b = 0; b < structure.places.size(); ++b) {
+    const Eigen::Index row = 6 * structure.places[b].row, column = 6 * structure.places[b].column;
+    information.block<6, 6>(row, column) += made.blocks[b];
+    if (row != column) information.block<6, 6>(column, row) += made.blocks[b].transpose();
+  }
+  for (Eigen::Index k = 0; k < unknowns; ++k) {
+    information.block<6, 6>(6 * k, 6 * k) += made.diagonal[static_cast<std::size_t>(k)];
+  }
+  for (int run = 0; run < 20; ++run) {
+    Eigen::VectorXd change(6 * unknowns);
+    for (Eigen::Index k = 0; k < change.size(); ++k) change(k) = uniform(random, -1e-5, 1e-5);
+    const double expected = 0.5 * change.dot(information * change);
+    EXPECT_NEAR(costOf(change, 1e3), expected, 0.01 * expected);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Blocks, BundleInertiaOf, testing::Values(30, 0));
+
+TEST(BundleInertia, TellsTheScaleThatPointsCannot) {
+  Random random(3);
+  const BundleScene scene = sceneWithInertia(random, 6, 1);
+  // A map that is a third too large fits all that is seen.
+  BundleProblem problem = scene.truth;
+  const Eigen::Vector3d origin = problem.cameras[0].world_T_camera.translation;
+  for (BundleCamera& c : problem.cameras) {
+    Eigen::Vector3d& centre = c.world_T_camera.translation;
+    centre = origin + 1.3 * (centre - origin);
+  }
+  for (BundlePoint& p : problem.points) p.inverse_depth /= 1.3;
+  BundleProblem seen_only = problem;
+  seen_only.turns.clear();
+  seen_only.speed_changes.clear();
+  ASSERT_TRUE(adjustBundle(scene.camera, seen_only, manyIterations()).usable);
+  EXPECT_GT(largestTranslationError(seen_only, scene.truth), 0.2);
+  ASSERT_TRUE(adjustBundle(scene.camera, problem, manyIterations()).usable);
+  EXPECT_LT(largestTranslationError(problem, scene.truth), 1e-4);
+  EXPECT_LT(largestDepthError(problem, scene.truth), 1e-4);
+}
+
+TEST(BundleInertia, HoldsTurnsThatLittleIsSeenOf) {
+  Random random(4);
+  BundleScene scene = sceneWithInertia(random, 6, 1, 5000);
+  BundleProblem& truth = scene.truth;
+  truth.speed_changes.clear();
+  truth.scale_camera = 5;
+  for (BundleObservation& o : truth.observations) {
+    o.measurement.sigma_normal = o.measurement.sigma_tangent = 5;
+    o.measurement.pixel += 5 * uniformVector(random, 1).head<2>();
+  }
+  BundleProblem with = truth, without = truth;
+  without.turns.clear();
+  ASSERT_TRUE(adjustBundle(scene.camera, with, manyIterations()).usable);
+  ASSERT_TRUE(adjustBundle(scene.camera, without, manyIterations()).usable);
+  EXPECT_LT(largestRotationError(with, truth), 0.5 * largestRotationError(without, truth));
+}
+
+TEST(BundleInertia, ValuesOfNoUseTakeNoPart) {
+  Random random(5);
+  const BundleScene scene = sceneWithInertia(random, 6, 1);
+  BundleProblem plain = scene.truth;
+  plain.turns.clear();
+  plain.speed_changes.clear();
+  BundleProblem useless = plain;
+  useless.turns.assign(1, {1, 1, Eigen::Quaterniond::Identity(), Eigen::Matrix3d::Identity()});
+  useless.turns.push_back(
+      {1, 2, Eigen::Quaterniond::Identity(), std::numeric_limits<double>::quiet_NaN() * Eigen::Matrix3d::Identity()});
+  BundleSpeedChange change = scene.truth.speed_changes.front();
+  change.seconds[1] = 0;
+  useless.speed_changes.push_back(change);
+  change = scene.truth.speed_changes.front();
+  change.of_first.x() = std::numeric_limits<double>::infinity();
+  useless.speed_changes.push_back(change);
+  plain.scale_camera = useless.scale_camera = -1;
+  ASSERT_TRUE(adjustBundle(scene.camera, plain, manyIterations()).usable);
+  ASSERT_TRUE(adjustBundle(scene.camera, useless, manyIterations()).usable);
+  EXPECT_TRUE(sameBytes(plain, useless));
+
+  BundleProblem out_of_range = scene.truth;
+  out_of_range.speed_changes.front().cameras[2] = 6;
+  EXPECT_FALSE(adjustBundle(scene.camera, out_of_range, manyIterations()).usable);
+  out_of_range = scene.truth;
+  out_of_range.turns.front().first = -1;
+  EXPECT_FALSE(adjustBundle(scene.camera, out_of_range, manyIterations()).usable);
+}
+
+}  // namespace
+}  // namespace edgeslam::test
