@@ -11,4 +11,5 @@ file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/ros2/dds/*.cpp)
 add_library(edgeslam_ros2_dds MODULE ${sources})
 target_link_libraries(edgeslam_ros2_dds PRIVATE edgeslam_ros2 edgeslam_ros2_types ${CYCLONEDDS_LIBRARY})
 target_link_options(edgeslam_ros2_dds PRIVATE -Wl,--as-needed)
+add_dependencies(edgeslam edgeslam_ros2_dds)  # made with the program, as it is loaded by it
 set_target_properties(edgeslam_ros2_dds PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
