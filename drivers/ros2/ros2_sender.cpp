@@ -135,7 +135,7 @@ void Ros2Sender::lookRound() {
     tellOnce("another program publishes " + topic +
              " on this domain, too: give one of them another ros2.namespace or ros2.domain");
   }
-  if (const std::string complaint = wire_->complaint(); !complaint.empty()) tellOnce(complaint);
+  if (const std::string complaint = wire_->complaint(); !complaint.empty()) tellOnce("DDS says: " + complaint);
   if (overflowed_.exchange(false, std::memory_order_relaxed)) {
     tellOnce("messages are left out: DDS takes them more slowly than they come");
   }

@@ -44,7 +44,10 @@ struct OpenedRosWire {
   bool may_come = false;          // then: by itself, as with a network that is not up yet
 };
 
-OpenedRosWire openRosWire(const RosWireSetup& setup);
+// Where the library may be: beside the program as it is built, and where its package puts it.
+std::vector<std::string> rosWireFolders();
+
+OpenedRosWire openRosWire(const RosWireSetup& setup, const std::vector<std::string>& folders = rosWireFolders());
 
 // What the library gives: `problem` where it returns null.
 extern "C" using OpenRosWireFunction = RosWire * (const RosWireSetup& setup, std::string& problem);
