@@ -31,7 +31,7 @@ To decodedAs(const From& message) {
 }
 
 LcmFrame messagesOf(const FrameResult& now, const RobotSetup& robot = {},
-                          const std::optional<FrameResult>& before = {}) {
+                    const std::optional<FrameResult>& before = {}) {
   return frameMessages(now, robot, before ? measuredPose(*before) : std::nullopt, 7, 1234);
 }
 
@@ -112,8 +112,7 @@ TEST(Messages, TwistIsOfTheBodyInItsOwnFrame) {
     const Pose first = randomPose(random);
     const Eigen::Quaterniond turn = rotationExp(rate * dt);
     const Pose second = first * Pose{turn, turn * (velocity * dt)};
-    const LcmFrame messages =
-        messagesOf(measuredFrame(1, cameraAt(second)), robot, measuredFrame(0, cameraAt(first)));
+    const LcmFrame messages = messagesOf(measuredFrame(1, cameraAt(second)), robot, measuredFrame(0, cameraAt(first)));
     ASSERT_TRUE(messages.state.has_twist);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(messages.state.rotation_rate[k], rate[k], 1e-6);
@@ -174,8 +173,7 @@ TEST(Messages, AStateTellsBodyAndCameraWithPositiveW) {
 
 TEST(Messages, AFrameWithoutAPoseSendsNoneAndSaysWhy) {
   for (const TrackingState state : {TrackingState::initialising, TrackingState::lost}) {
-    const LcmFrame messages =
-        messagesOf(frameWithoutPose(1, state, "too few points"), {}, measuredFrame(0, Pose()));
+    const LcmFrame messages = messagesOf(frameWithoutPose(1, state, "too few points"), {}, measuredFrame(0, Pose()));
     EXPECT_FALSE(messages.pose);
     EXPECT_FALSE(messages.state.has_pose);
     EXPECT_FALSE(messages.state.has_twist);
