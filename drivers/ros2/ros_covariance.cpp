@@ -24,11 +24,7 @@ Matrix6d withScaleError(Matrix6d covariance_in_parent, const Eigen::Vector3d& po
 
 RosCovariance rosCovariance(const Matrix6d& covariance) {
   RosCovariance rows{};
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) {
-      rows.at(static_cast<std::size_t>(6 * row + column)) = covariance(row, column);
-    }
-  }
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(rows.data()) = covariance;
   return rows;
 }
 
