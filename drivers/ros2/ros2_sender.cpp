@@ -66,7 +66,7 @@ void Ros2Sender::tellOnce(const std::string& line) {
 
 // The thread.
 void Ros2Sender::run() {
-  setUpThread({"ros2", real_time_priority_, 0, false, {}});  // the start check has told what is not allowed
+  setUpThread({"ros2", 0, 0, false, {}});
   Clock::time_point end = Clock::time_point::max();
   while (!given_up_.load(std::memory_order_relaxed) && Clock::now() < end) {
     const bool is_stopping = stopping_.load(std::memory_order_acquire);
@@ -114,6 +114,9 @@ void Ros2Sender::openWhenDue() {
   OpenedRosWire opened = openRosWire(setup);
   wire_ = std::move(opened.wire);
   if (wire_) {
+    // Only now: DDS's own threads have the priority of who begins them, and a flood that they read must delay nobody.
+    // The start check has told what is not allowed.
+    setUpThread({"ros2", real_time_priority_, 0, false, {}});
     tellOnce("messages go out on domain " + std::to_string(setup.domain) + ", odometry as " +
              rosTopic(options_.topic_namespace, "odom"));
   } else if (opened.may_come) {
