@@ -23,6 +23,7 @@ string(APPEND link_folders " -Wl,-rpath-link,${CMAKE_SYSROOT}/usr/lib/${EDGESLAM
 string(APPEND link_folders " -Wl,-rpath-link,${CMAKE_SYSROOT}/usr/lib/${EDGESLAM_TRIPLET}/lapack")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "${link_folders}")
 set(CMAKE_SHARED_LINKER_FLAGS_INIT "${link_folders}")
+set(CMAKE_MODULE_LINKER_FLAGS_INIT "${link_folders}")
 
 find_program(EDGESLAM_EMULATOR_PROGRAM ${EDGESLAM_EMULATOR})
 if(EDGESLAM_EMULATOR_PROGRAM)

@@ -10,12 +10,6 @@ Pose scaled(const Pose& pose, const ScaleState& scale) {
   return {pose.rotation, scale.metres_per_unit * pose.translation};
 }
 
-Pose cameraOnBody(const RobotSetup& robot) {
-  Pose body_T_camera = robot.body_T_camera;
-  if (robot.scale.kind == ScaleKind::unknown) body_T_camera.translation.setZero();
-  return body_T_camera;
-}
-
 Matrix6d onBody(Matrix6d covariance, const RobotSetup& robot) {
   covariance.topRows<3>() *= robot.scale.metres_per_unit;
   covariance.leftCols<3>() *= robot.scale.metres_per_unit;
@@ -30,6 +24,12 @@ Pose onBody(const Pose& motion_of_camera, const RobotSetup& robot) {
 bool isKnown(const Matrix6d& covariance) { return covariance.allFinite() && covariance.diagonal().minCoeff() > 0; }
 
 }  // namespace
+
+Pose cameraOnBody(const RobotSetup& robot) {
+  Pose body_T_camera = robot.body_T_camera;
+  if (robot.scale.kind == ScaleKind::unknown) body_T_camera.translation.setZero();
+  return body_T_camera;
+}
 
 Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot) { return onBody(world_T_camera, robot); }
 

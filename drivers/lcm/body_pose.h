@@ -26,6 +26,9 @@ struct BodyMotion {
 constexpr double unknown_variance = 1e6;
 constexpr double longest_motion_s = 0.5;  // between two measured poses that give a motion
 
+// The camera's place on the robot in the unit of the messages; none while the scale is unknown.
+Pose cameraOnBody(const RobotSetup& robot);
+
 // local_T_body. While the scale is unknown, the camera's place on the robot (metres) cannot be told in map units: the
 // body then has its own orientation and the camera's position.
 Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot);

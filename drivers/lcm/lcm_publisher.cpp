@@ -3,7 +3,6 @@
 #include <chrono>
 
 #include "drivers/lcm/clocks.h"
-#include "drivers/lcm/messages.h"
 
 namespace edgeslam {
 namespace {
@@ -31,28 +30,32 @@ LcmPublisher::LcmPublisher(const LcmOptions& options, const Pose& body_T_camera)
   }
 }
 
-void LcmPublisher::frame(const FrameResult& result) {
-  const PublishedFrame messages = frameMessages(result, robot_, before_, states_++, realUtime());
+SentFrame LcmPublisher::frame(const FrameResult& result) {
+  SentFrame sent{frameMessages(result, robot_, before_, states_++, realUtime()), body_odometry_.next(result, robot_)};
+  const LcmFrame& messages = sent.frame;
   sender_.send(options_.state_channel, messages.state);  // first: it tells the world that the pose is in
   if (messages.pose) sender_.send(options_.pose_channel, *messages.pose);
   sender_.send(options_.odometry_channel, messages.update);
-  if (const std::optional<OdometryMessages> odometry = body_odometry_.next(result, robot_)) {
-    sender_.send(options_.correction_channel, odometry->correction);  // first: it tells of resets
-    sender_.send(options_.odom_channel, odometry->odometry);
+  if (sent.odometry) {
+    sender_.send(options_.correction_channel, sent.odometry->correction);  // first: it tells of resets
+    sender_.send(options_.odom_channel, sent.odometry->odometry);
   }
   if (result.state == TrackingState::initialising) before_.reset();  // the next pose is in another map
   if (const std::optional<MeasuredPose> measured = measuredPose(result)) before_ = measured;
   statistics_.add(result);
   sendMapParts();
   rejoinAfterComeback();
+  return sent;
 }
 
-void LcmPublisher::status(const PublisherStatus& status) {
+status_t LcmPublisher::status(const PublisherStatus& status) {
   const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
-  sender_.send(options_.status_channel, statusMessage(status, statistics_.take(now_ns), counts(), systemFigures(),
-                                                      statuses_++, monotonicUtime()));
+  status_t message =
+      statusMessage(status, statistics_.take(now_ns), counts(), systemFigures(), statuses_++, monotonicUtime());
+  sender_.send(options_.status_channel, message);
   sendMapParts();
   rejoinAfterComeback();
+  return message;
 }
 
 void LcmPublisher::map(std::int64_t version, PublishedMap map) {

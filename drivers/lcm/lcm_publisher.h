@@ -12,10 +12,17 @@
 #include "drivers/lcm/lcm_options.h"
 #include "drivers/lcm/lcm_sender.h"
 #include "drivers/lcm/map_messages.h"
+#include "drivers/lcm/messages.h"
 #include "drivers/lcm/odometry_receiver.h"
 #include "drivers/lcm/status_message.h"
 
 namespace edgeslam {
+
+// What of one frame went out: what is told in other ways, too, is made of it.
+struct SentFrame {
+  LcmFrame frame;
+  std::optional<OdometryMessages> odometry;
+};
 
 // All functions are for one thread, the publishing one.
 class LcmPublisher {
@@ -27,13 +34,14 @@ class LcmPublisher {
   // From the next frame on.
   void setScale(const ScaleState& scale) { robot_.scale = scale; }
   const ScaleState& scale() const { return robot_.scale; }
+  const RobotSetup& robot() const { return robot_; }
 
   // Each frame, in order: SLAM_STATE and SLAM_REL_ODOMETRY, SLAM_POSE where the pose was measured, SLAM_CORRECTION and
   // SLAM_ODOMETRY where the motion to it is known; some of a waiting map's parts, too.
-  void frame(const FrameResult& result);
+  SentFrame frame(const FrameResult& result);
 
   // Each second: SLAM_STATUS; rates and latencies are over the frames since the call before.
-  void status(const PublisherStatus& status);
+  status_t status(const PublisherStatus& status);
 
   // SLAM_MAP_LINES and SLAM_MAP, their parts with the frames that follow. A map of which parts still wait is given up.
   // Versions grow.

@@ -85,16 +85,15 @@ update_t updateMessage(const FrameResult& result, const std::optional<BodyMotion
 
 }  // namespace
 
-PublishedFrame frameMessages(const FrameResult& result, const RobotSetup& robot,
-                             const std::optional<MeasuredPose>& before, std::int64_t sequence,
-                             std::int64_t publish_utime) {
+LcmFrame frameMessages(const FrameResult& result, const RobotSetup& robot, const std::optional<MeasuredPose>& before,
+                       std::int64_t sequence, std::int64_t publish_utime) {
   const std::optional<MeasuredPose> now = measuredPose(result);
   std::optional<BodyMotion> motion;
   if (now && before) motion = bodyMotion(*before, *now, robot);
   BodyTwist twist;
   if (motion) twist = twistOf(*motion);
 
-  PublishedFrame messages;
+  LcmFrame messages;
   messages.state = stateMessage(result, robot, motion ? &twist : nullptr);
   messages.state.sequence = sequence;
   messages.state.publish_utime = publish_utime;

@@ -12,7 +12,7 @@
 
 namespace edgeslam {
 
-struct PublishedFrame {
+struct LcmFrame {
   state_t state;               // every frame
   std::optional<pose_t> pose;  // of a measured pose alone
   update_t update;             // every frame
@@ -20,9 +20,8 @@ struct PublishedFrame {
 
 // `before`: the latest measured pose of an earlier frame, if any. A pose that is not finite is told as lost.
 // `publish_utime`: CLOCK_REALTIME [us].
-PublishedFrame frameMessages(const FrameResult& result, const RobotSetup& robot,
-                             const std::optional<MeasuredPose>& before, std::int64_t sequence,
-                             std::int64_t publish_utime);
+LcmFrame frameMessages(const FrameResult& result, const RobotSetup& robot, const std::optional<MeasuredPose>& before,
+                       std::int64_t sequence, std::int64_t publish_utime);
 
 // state_t's numbers.
 std::int8_t stateNumber(TrackingState state);

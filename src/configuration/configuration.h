@@ -8,6 +8,7 @@
 
 #include "drivers/frame_capture/camera_options.h"
 #include "drivers/lcm/lcm_options.h"
+#include "drivers/ros2/ros2_options.h"
 #include "drivers/viewer/viewer_options.h"
 #include "edgeslam/input_error.h"
 #include "geometry/camera_mask.h"
@@ -27,6 +28,7 @@ struct ServiceOptions {
   bool records_from_start = false;
   ScaleOptions scale;
   ViewerOptions viewer;
+  Ros2Options ros2;
 };
 
 struct Configuration {

@@ -37,6 +37,7 @@ std::string scaleProblem(const ServiceOptions& options) {
 std::string sectionProblem(const std::string& section, const Configuration& configuration) {
   const ServiceOptions& service = configuration.service;
   if (section == "viewer") return viewerProblem(service.viewer);
+  if (section == "ros2") return ros2Problem(service.ros2);
   if (section == "lcm") {
     if (const std::string wrong = lcmProblem(service.lcm); !wrong.empty()) return "lcm: " + wrong;
   }

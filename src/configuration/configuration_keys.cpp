@@ -99,6 +99,7 @@ Keys serviceKeys(ServiceOptions& service, RecordingSpace& space) {
   LcmOptions& lcm = service.lcm;
   ScaleOptions& scale = service.scale;
   ViewerOptions& viewer = service.viewer;
+  Ros2Options& ros2 = service.ros2;
   Keys keys{
       heading("lcm", "Messages to the robot's controller"),
       text("lcm.url", &lcm.url, "where messages go (default: LCM_DEFAULT_URL of the environment, or LCM's own)",
@@ -117,6 +118,20 @@ Keys serviceKeys(ServiceOptions& service, RecordingSpace& space) {
       text("lcm.answer_channel", &lcm.answer_channel, ""),
       {"lcm.map_interval_s", &service.map_interval_s, "s", 0, 3600,
        "the map is sent at most so often where it changed; 0: on request only"},
+
+      heading("ros2", "The same for ROS 2, which need not be installed here (docs/ros2.md)"),
+      {"ros2.enabled", &ros2.enabled, "", 0, 0,
+       "odometry, pose in the map, transforms, map and diagnostics are published for ROS 2"},
+      {"ros2.domain", &ros2.domain, "", -1, 232,
+       "programs of the same domain hear each other; -1: ROS_DOMAIN_ID of the environment, or 0"},
+      text("ros2.namespace", &ros2.topic_namespace,
+           "before the topics odom, pose and map_points, which others on the robot may have, too (default: none)",
+           "edgeslam"),
+      text("ros2.transforms", &ros2.transforms,
+           "all: map to odom to body; map_to_odom: another node has odom to body; none"),
+      text("ros2.map_frame", &ros2.map_frame, "names of the frames"),
+      text("ros2.odom_frame", &ros2.odom_frame, ""),
+      text("ros2.body_frame", &ros2.body_frame, "of the robot, in which camera.body_T_camera has the camera"),
 
       heading("map", "The map on the disk, of `edgeslam run`"),
       text("map.file", &service.map_file,
@@ -436,7 +451,8 @@ std::vector<ConfigurationKey> configurationKeys(Configuration& configuration) {
 }
 
 bool isOfMethod(const ConfigurationKey& key) {
-  constexpr std::array<const char*, 7> others{"camera", "capture", "lcm", "map", "recording", "scale", "viewer"};
+  constexpr std::array<const char*, 8> others{"camera", "capture",   "lcm",   "ros2",
+                                              "map",    "recording", "scale", "viewer"};
   return std::find(others.begin(), others.end(), key.section()) == others.end();
 }
 

@@ -16,9 +16,9 @@ constexpr auto shown_interval = std::chrono::seconds(2);
 
 }  // namespace
 
-MapPublisher::MapPublisher(const Camera& camera, double interval_s, LcmPublisher& publisher, Viewer* viewer,
-                           BackgroundWork& work)
-    : camera_(camera), interval_s_(interval_s), publisher_(publisher), viewer_(viewer), work_(work) {}
+MapPublisher::MapPublisher(const Camera& camera, double interval_s, LcmPublisher& publisher, Ros2Publisher* ros2,
+                           Viewer* viewer, BackgroundWork& work)
+    : camera_(camera), interval_s_(interval_s), publisher_(publisher), ros2_(ros2), viewer_(viewer), work_(work) {}
 
 void MapPublisher::begin(LiveRun& run) {
   run_ = &run;
@@ -71,7 +71,8 @@ void MapPublisher::mapCame(const std::shared_ptr<const Map>& map) {
   if (viewer_) viewer_->map(map, world);
   if (!std::exchange(is_wanted_, false)) return;
   work_.begin([this, map, world, camera = camera_, version = ++version_]() -> BackgroundWork::Completion {
-    return [this, version, published = publishedMap(*map, world, camera)]() mutable {
+    return [this, world, version, published = publishedMap(*map, world, camera)]() mutable {
+      if (ros2_) ros2_->map(published, world, publisher_.robot());
       publisher_.map(version, std::move(published));
     };
   });

@@ -1,5 +1,5 @@
-// The map on its way out: as SLAM_MAP and SLAM_MAP_LINES, on request and where it changed, and to the viewer while
-// someone looks on.
+// The map on its way out: as SLAM_MAP and SLAM_MAP_LINES, and to ROS 2, on request and where it changed; and to the
+// viewer while someone looks on.
 #pragma once
 
 #include <chrono>
@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "drivers/lcm/lcm_publisher.h"
+#include "drivers/ros2/ros2_publisher.h"
 #include "drivers/viewer/viewer.h"
 #include "geometry/camera.h"
 #include "pipeline/live_run.h"
@@ -19,9 +20,10 @@ class MapPublisher {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `interval_s`: the map is sent at most so often where it changed; 0: on request only. `viewer` may be null. What is
-  // referred to outlives it; work that was begun may outlive this object.
-  MapPublisher(const Camera& camera, double interval_s, LcmPublisher& publisher, Viewer* viewer, BackgroundWork& work);
+  // `interval_s`: the map is sent at most so often where it changed; 0: on request only. `ros2` and `viewer` may be
+  // null. What is referred to outlives it; work that was begun may outlive this object.
+  MapPublisher(const Camera& camera, double interval_s, LcmPublisher& publisher, Ros2Publisher* ros2, Viewer* viewer,
+               BackgroundWork& work);
 
   void begin(LiveRun& run);
   void end() { is_wanted_ = false; }
@@ -41,6 +43,7 @@ class MapPublisher {
   const Camera camera_;
   const double interval_s_;
   LcmPublisher& publisher_;
+  Ros2Publisher* ros2_;
   Viewer* viewer_;
   BackgroundWork& work_;
   LiveRun* run_ = nullptr;  // from begin() on

@@ -7,6 +7,7 @@ PublishingSetup publishingSetup(const Configuration& configuration, const Camera
   PublishingSetup setup;
   setup.lcm = service.lcm;
   setup.lcm.real_time_priority = configuration.settings.threads.publishing_priority;
+  setup.ros2 = service.ros2;
   setup.map_interval_s = service.map_interval_s;
   setup.body_T_camera = configuration.body_T_camera;
   setup.camera = camera;

@@ -5,6 +5,7 @@
 
 #include "configuration/configuration.h"
 #include "drivers/lcm/lcm_options.h"
+#include "drivers/ros2/ros2_options.h"
 #include "drivers/viewer/viewer.h"
 #include "geometry/camera.h"
 #include "scale/scale_options.h"
@@ -13,6 +14,7 @@ namespace edgeslam {
 
 struct PublishingSetup {
   LcmOptions lcm;
+  Ros2Options ros2;
   double map_interval_s = 5;  // the map is sent at most so often where it changed; 0: on request only
   Pose body_T_camera;         // translation [m]
   Camera camera;

@@ -1,5 +1,5 @@
 // What the log is told of a run as it goes: changes of its state, changes of its world, messages that do not
-// go out, and what mapping found.
+// go out, over LCM or to ROS 2, and what mapping found.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,8 @@ class RunLog {
   void report(const MappingReport& report);
   // The camera is in another world from this frame on.
   void tellWorld(std::int64_t frame_index, const std::string& change);
+  // A line of what goes to ROS 2.
+  void tellRos2(const std::string& line) { log_.tell(line); }
   // Each second, so that there is at most a line of each kind a second. Empty `state`: none to tell; empty
   // `lcm_problem`: messages go out.
   void tellChanges(const std::string& state, const std::string& lcm_problem);

@@ -8,14 +8,23 @@
 #include "service/status_text.h"
 
 namespace edgeslam {
+namespace {
+
+std::unique_ptr<Ros2Publisher> wantedRos2(const PublishingSetup& setup) {
+  if (!setup.ros2.enabled) return nullptr;
+  return std::make_unique<Ros2Publisher>(setup.ros2, setup.lcm.real_time_priority);
+}
+
+}  // namespace
 
 RunPublisher::RunPublisher(const PublishingSetup& setup, CaptureLink& link, EventLog& log)
     : viewer_(setup.viewer),
       link_(link),
       publisher_(setup.lcm, setup.body_T_camera),
+      ros2_(wantedRos2(setup)),
       answers_(publisher_, viewer_),
       scale_(setup.scale, setup.body_T_camera, publisher_, work_, log),
-      map_(setup.camera, setup.map_interval_s, publisher_, viewer_, work_),
+      map_(setup.camera, setup.map_interval_s, publisher_, ros2_.get(), viewer_, work_),
       saving_(setup.camera, setup.map_file, answers_, disk_work_, log),
       recording_(answers_, disk_work_, log),
       commands_({link_, map_, saving_, recording_, scale_}, answers_, setup.begins_anew),
@@ -64,7 +73,8 @@ void RunPublisher::frame(const FrameResult& result, const std::string& problem) 
   const bool is_initialising = result.state == TrackingState::initialising;
   if (is_initialising && (state_ != TrackingState::initialising || scale_.isKnown())) scale_.noMap();
   scale_.enterWorld(result);
-  publisher_.frame(result);
+  const SentFrame sent = publisher_.frame(result);
+  if (ros2_) ros2_->frame(sent);
   if (viewer_) viewer_->frame(result);
   service_.alive(Clock::now());
   scale_.frame(result);
@@ -119,12 +129,14 @@ void RunPublisher::eachSecond(Clock::time_point now) {
 }
 
 void RunPublisher::giveOut(const PublisherStatus& status) {
-  publisher_.status(status);
+  const status_t sent = publisher_.status(status);
+  if (ros2_) ros2_->status(sent, publisher_.scale());
   if (viewer_) viewer_->status(status, publisher_.scale(), publisher_.problem());
 }
 
 void RunPublisher::tellChanges(const PublisherStatus& status) {
   log_.tellChanges(status.frames_captured > 0 ? logText(state_, reason_) : "", publisher_.problem());
+  while (const std::optional<std::string> event = ros2_ ? ros2_->nextEvent() : std::nullopt) log_.tellRos2(*event);
   recording_.tellChanges(status.recording);
 }
 

@@ -1,6 +1,6 @@
-// What a live run gives out, as LCM messages and to the viewer: each frame, the status each second, the map; and the
-// commands of the robot and of the person who looks on.
-// The daemon and a replay at real time publish by the same one.
+// What a live run gives out, as LCM messages, to ROS 2 and to the viewer: each frame, the status each second, the map;
+// and the commands of the robot and of the person who looks on. The daemon and a replay at real time publish by the
+// same one.
 #pragma once
 
 #include <chrono>
@@ -9,6 +9,7 @@
 #include <string>
 
 #include "drivers/lcm/lcm_publisher.h"
+#include "drivers/ros2/ros2_publisher.h"
 #include "pipeline/live_run.h"
 #include "recording/flight_recorder.h"
 #include "service/background_work.h"
@@ -66,6 +67,7 @@ class RunPublisher {
   CaptureLink& link_;
   ServiceNotification service_;
   LcmPublisher publisher_;
+  const std::unique_ptr<Ros2Publisher> ros2_;  // null: not wanted
   CommandAnswers answers_;
   BackgroundWork work_;
   BackgroundWork disk_work_;  // may take as long as a disk that is slow, or does not answer

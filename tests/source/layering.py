@@ -10,7 +10,7 @@ import tempfile
 
 ORDER = ["files", "geometry", "inertia", "frames", "image", "edges", "flow", "map", "adjustment", "tracking", "visual_odometry", "mapping", "places",
          "pipeline", "recording", "scale", "evaluation", "report", "benchmark", "simulator", "calibration", "drivers/frame_capture",
-         "drivers/v4l2", "drivers/libcamera", "drivers/replay", "drivers/cameras", "drivers/lcm", "drivers/viewer",
+         "drivers/v4l2", "drivers/libcamera", "drivers/replay", "drivers/cameras", "drivers/lcm", "drivers/ros2", "drivers/viewer",
          "configuration", "library", "service", "app"]
 INCLUDE = re.compile(r'^\s*#\s*include\s*"((?:drivers/)?[^"/]+)/')
 # Programs of their own, built as a user builds them.

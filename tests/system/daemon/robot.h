@@ -14,6 +14,7 @@
 
 #include "edgeslam/command_answer_t.hpp"
 #include "edgeslam/command_t.hpp"
+#include "edgeslam/correction_t.hpp"
 #include "edgeslam/map_lines_t.hpp"
 #include "edgeslam/map_part_t.hpp"
 #include "edgeslam/pose_t.hpp"
@@ -30,6 +31,8 @@ struct Heard {
   std::vector<status_t> statuses;
   std::vector<pose_t> poses;
   std::vector<update_t> updates;
+  std::vector<pose_t> odometry;
+  std::vector<correction_t> corrections;
   std::vector<map_part_t> map_parts;
   std::vector<map_lines_t> line_parts;
   std::map<std::int64_t, command_answer_t> answers;  // by the command's number
@@ -42,6 +45,8 @@ class Robot {
     hear("SLAM_STATUS", &Robot::take<status_t, &Heard::statuses>);
     hear("SLAM_POSE", &Robot::take<pose_t, &Heard::poses>);
     hear("SLAM_REL_ODOMETRY", &Robot::take<update_t, &Heard::updates>);
+    hear("SLAM_ODOMETRY", &Robot::take<pose_t, &Heard::odometry>);
+    hear("SLAM_CORRECTION", &Robot::take<correction_t, &Heard::corrections>);
     hear("SLAM_MAP", &Robot::take<map_part_t, &Heard::map_parts>);
     hear("SLAM_MAP_LINES", &Robot::take<map_lines_t, &Heard::line_parts>);
     hear("SLAM_ANSWER", &Robot::takeAnswer);

@@ -34,7 +34,7 @@ bool printable(const std::string& text) {
 }
 
 std::vector<std::vector<std::uint8_t>> oneOfEach() {
-  const PublishedFrame frame = frameMessages(measuredFrame(3, Pose()), {}, std::nullopt, 3, 0);
+  const LcmFrame frame = frameMessages(measuredFrame(3, Pose()), {}, std::nullopt, 3, 0);
   status_t status{};
   status.reason = "x";
   return {encoded(*frame.pose),  encoded(frame.state),   encoded(frame.update), encoded(status),

@@ -122,6 +122,9 @@ TEST(ConfigurationService, WhatIsWrongIsToldByLineAndKey) {
   expectRefused("viewer:\n  token: short\n", "2", "viewer.token: expected 16 to 128");
   expectRefused("viewer:\n  port: 0\n", "2", "viewer.port: 0 is out of range");
   expectRefused("viewer:\n  adress: 127.0.0.1\n", "2", "did you mean viewer.address?");
+  expectRefused("ros2:\n  namespace: 1robot\n", "2", "ros2.namespace: '1robot' is none");
+  expectRefused("ros2:\n  transforms: odom\n", "2", "ros2.transforms: 'odom' is not known");
+  expectRefused("ros2:\n  domain: 233\n", "2", "ros2.domain: 233 is out of range");
   expectRefused("lcm: 5\n", "1", "lcm: a mapping of keys is expected");
 }
 

@@ -58,6 +58,7 @@ std::string otherValue(const ConfigurationKey& key) {
   if (std::holds_alternative<std::string*>(key.field)) {
     if (key.path == "scale.source") return "camera_height";
     if (key.path == "viewer.address") return "127.0.0.2";
+    if (key.path == "ros2.transforms") return "map_to_odom";
     return key.example.empty() ? "ANOTHER_NAME" : key.example;
   }
   const bool is_least = valueText(key.field) == numberText(key.least);

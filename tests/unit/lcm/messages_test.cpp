@@ -30,12 +30,12 @@ To decodedAs(const From& message) {
   return decoded;
 }
 
-PublishedFrame messagesOf(const FrameResult& now, const RobotSetup& robot = {},
-                          const std::optional<FrameResult>& before = {}) {
+LcmFrame messagesOf(const FrameResult& now, const RobotSetup& robot = {},
+                    const std::optional<FrameResult>& before = {}) {
   return frameMessages(now, robot, before ? measuredPose(*before) : std::nullopt, 7, 1234);
 }
 
-void expectFinite(const PublishedFrame& messages) {
+void expectFinite(const LcmFrame& messages) {
   for (const auto* values : {&messages.state.position, &messages.state.camera_position, &messages.state.velocity,
                              &messages.state.rotation_rate, &messages.update.translation}) {
     for (const double value : *values) EXPECT_TRUE(std::isfinite(value));
@@ -59,7 +59,7 @@ TEST(Messages, PoseIsReadByThePublishedType) {
   Random random(1);
   const FrameResult before = measuredFrame(0, randomPose(random));
   const FrameResult now = measuredFrame(1, before.world_T_camera * Pose{rotationExp({0, 0.01, 0}), {0.02, 0, 0.01}});
-  const PublishedFrame messages = messagesOf(now, metricRobot(randomPose(random), 0.5), before);
+  const LcmFrame messages = messagesOf(now, metricRobot(randomPose(random), 0.5), before);
   ASSERT_TRUE(messages.pose);
   EXPECT_EQ(pose_t::getHash(), bot_core::pose_t::getHash());
   const auto decoded = decodedAs<bot_core::pose_t>(*messages.pose);
@@ -85,7 +85,7 @@ TEST(Messages, UpdateIsReadByThePublishedType) {
   const FrameResult before = measuredFrame(0, randomPose(random));
   const Pose step{rotationExp({0, 0.01, 0}), {0.02, 0, 0.01}};
   const FrameResult now = measuredFrame(1, before.world_T_camera * step);
-  const PublishedFrame messages = messagesOf(now, {}, before);
+  const LcmFrame messages = messagesOf(now, {}, before);
   EXPECT_EQ(update_t::getHash(), fovis::update_t::getHash());
   const auto decoded = decodedAs<fovis::update_t>(messages.update);
   EXPECT_EQ(decoded.timestamp, now.time_ns / 1000);
@@ -112,8 +112,7 @@ TEST(Messages, TwistIsOfTheBodyInItsOwnFrame) {
     const Pose first = randomPose(random);
     const Eigen::Quaterniond turn = rotationExp(rate * dt);
     const Pose second = first * Pose{turn, turn * (velocity * dt)};
-    const PublishedFrame messages =
-        messagesOf(measuredFrame(1, cameraAt(second)), robot, measuredFrame(0, cameraAt(first)));
+    const LcmFrame messages = messagesOf(measuredFrame(1, cameraAt(second)), robot, measuredFrame(0, cameraAt(first)));
     ASSERT_TRUE(messages.state.has_twist);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(messages.state.rotation_rate[k], rate[k], 1e-6);
@@ -128,7 +127,7 @@ TEST(Messages, TheWorldIsToldAndNoMotionLeadsFromOneToAnother) {
   before.reference = now.reference = 3;  // joined since: the keyframe's unit was another before
   EXPECT_EQ(messagesOf(now).state.world, 0) << "of a frame that does not tell it";
   before.world = 2, now.world = 1;
-  const PublishedFrame messages = messagesOf(now, {}, before);
+  const LcmFrame messages = messagesOf(now, {}, before);
   EXPECT_EQ(messages.state.world, 1);
   EXPECT_FALSE(messages.state.has_twist);
   EXPECT_EQ(messages.update.estimate_status, update_t::NO_DATA);
@@ -174,8 +173,7 @@ TEST(Messages, AStateTellsBodyAndCameraWithPositiveW) {
 
 TEST(Messages, AFrameWithoutAPoseSendsNoneAndSaysWhy) {
   for (const TrackingState state : {TrackingState::initialising, TrackingState::lost}) {
-    const PublishedFrame messages =
-        messagesOf(frameWithoutPose(1, state, "too few points"), {}, measuredFrame(0, Pose()));
+    const LcmFrame messages = messagesOf(frameWithoutPose(1, state, "too few points"), {}, measuredFrame(0, Pose()));
     EXPECT_FALSE(messages.pose);
     EXPECT_FALSE(messages.state.has_pose);
     EXPECT_FALSE(messages.state.has_twist);
@@ -192,7 +190,7 @@ TEST(Messages, AFrameWithoutAPoseSendsNoneAndSaysWhy) {
 TEST(Messages, AGuessedPoseIsToldButNotPublishedAsMeasured) {
   FrameResult frame = measuredFrame(1, Pose());
   frame.state = TrackingState::predicted;
-  const PublishedFrame messages = messagesOf(frame, {}, measuredFrame(0, Pose()));
+  const LcmFrame messages = messagesOf(frame, {}, measuredFrame(0, Pose()));
   EXPECT_FALSE(messages.pose);
   EXPECT_TRUE(messages.state.has_pose);
   EXPECT_EQ(messages.state.state, state_t::PREDICTED);
@@ -200,7 +198,7 @@ TEST(Messages, AGuessedPoseIsToldButNotPublishedAsMeasured) {
 }
 
 TEST(Messages, TheFirstPoseAfterALongLossHasNoMotion) {
-  const PublishedFrame messages = messagesOf(measuredFrame(100, Pose()), {}, measuredFrame(0, Pose()));
+  const LcmFrame messages = messagesOf(measuredFrame(100, Pose()), {}, measuredFrame(0, Pose()));
   EXPECT_TRUE(messages.pose);
   EXPECT_FALSE(messages.state.has_twist);
   EXPECT_EQ(messages.update.estimate_status, update_t::NO_DATA);
@@ -211,7 +209,7 @@ TEST(Messages, WhatIsNotFiniteNeverGoesOut) {
   for (const double broken : broken_values) {
     FrameResult pose = measuredFrame(1, Pose());
     pose.world_T_camera.translation.y() = broken;
-    const PublishedFrame lost = messagesOf(pose, {}, measuredFrame(0, Pose()));
+    const LcmFrame lost = messagesOf(pose, {}, measuredFrame(0, Pose()));
     expectFinite(lost);
     EXPECT_FALSE(lost.pose);
     EXPECT_EQ(lost.state.state, state_t::LOST);
@@ -220,7 +218,7 @@ TEST(Messages, WhatIsNotFiniteNeverGoesOut) {
     FrameResult rest = measuredFrame(1, Pose());
     rest.world_covariance(4, 4) = rest.latency_ms = rest.reference_T_camera.translation.x() = broken;
     rest.reference = 1;
-    const PublishedFrame kept = messagesOf(rest, {}, measuredFrame(0, Pose()));
+    const LcmFrame kept = messagesOf(rest, {}, measuredFrame(0, Pose()));
     expectFinite(kept);
     EXPECT_TRUE(kept.pose);
     EXPECT_EQ(kept.state.covariance[0][0], unknown_variance);
@@ -230,11 +228,11 @@ TEST(Messages, WhatIsNotFiniteNeverGoesOut) {
 
 TEST(Messages, TheScaleIsTold) {
   const Pose at{Eigen::Quaterniond::Identity(), {2, 0, 0}};
-  const PublishedFrame unknown = messagesOf(measuredFrame(0, at));
+  const LcmFrame unknown = messagesOf(measuredFrame(0, at));
   EXPECT_EQ(unknown.state.scale_state, state_t::SCALE_UNKNOWN);
   EXPECT_EQ(unknown.state.scale, 1);
   EXPECT_EQ(unknown.state.position[0], 2);
-  const PublishedFrame metric = messagesOf(measuredFrame(0, at), metricRobot(Pose(), 0.25));
+  const LcmFrame metric = messagesOf(measuredFrame(0, at), metricRobot(Pose(), 0.25));
   EXPECT_EQ(metric.state.scale_state, state_t::SCALE_FROM_KNOWN_DISTANCE);
   EXPECT_EQ(metric.state.scale, 0.25);
   EXPECT_EQ(metric.state.scale_sigma, 0.02);
@@ -245,7 +243,7 @@ TEST(Messages, TheScaleIsTold) {
 TEST(Messages, FitIntoAPacketWithTheLongestReason) {
   FrameResult frame = measuredFrame(1, Pose());
   frame.reason = std::string(5000, 'x');
-  const PublishedFrame messages = messagesOf(frame);
+  const LcmFrame messages = messagesOf(frame);
   EXPECT_LT(encoded(messages.state).size(), packet_bytes);
   EXPECT_LT(encoded(messages.update).size(), packet_bytes);
   EXPECT_LT(encoded(*messages.pose).size(), packet_bytes);
