@@ -78,7 +78,7 @@ TEST(InertialFile, SaysWhatIsWrongWithAUnit) {
   expectUnitRefused("rate_hz: 200\n", "'imu_T_camera' is missing");
   expectUnitRefused("imu_T_camera: {translation: [0, 0], quaternion: [1, 0, 0, 0]}\n", ":1: ", "3 numbers");
   expectUnitRefused("imu_T_camera: {translation: [0, 0, 0], quaternion: [1, 1, 0, 0]}\n", "length 1");
-  expectUnitRefused(unit_text + "gyroscope_noise: 1\n", ":6: ", "unknown key", "gyroscope_noise_density");
+  expectUnitRefused(unit_text + "gyroscope_noise_densty: 1\n", ":6: ", "unknown key", "gyroscope_noise_density");
   expectUnitRefused("accelerometer_noise_density: -1\n" + unit_text, ":1: ", "greater than 0");
   expectUnitRefused("imu_T_camera: [1\n", "YAML");
 }
