@@ -95,7 +95,8 @@ Keys cameraKeys(CameraOptions& capture) {
 }
 
 // What `edgeslam run` gives out and keeps.
-Keys serviceKeys(ServiceOptions& service, RecordingSpace& space) {
+Keys serviceKeys(ServiceOptions& service, Settings& settings) {
+  RecordingSpace& space = settings.recording;
   LcmOptions& lcm = service.lcm;
   ScaleOptions& scale = service.scale;
   ViewerOptions& viewer = service.viewer;
@@ -118,12 +119,15 @@ Keys serviceKeys(ServiceOptions& service, RecordingSpace& space) {
       {"lcm.map_interval_s", &service.map_interval_s, "s", 0, 3600,
        "the map is sent at most so often where it changed; 0: on request only"},
 
-      heading("map", "The map on the disk, of `edgeslam run`"),
+      heading("map", "The map on the disk, of `edgeslam run`; and whether it is only localised in"),
       text("map.file", &service.map_file,
            "written at the end, on SIGHUP and on command, whole or not at all; relative to the working directory",
            "robot.map"),
       {"map.go_on", &service.goes_on_with_map, "", 0, 0,
        "at the start, continue the map in the file, where there is one: the camera is looked for in it"},
+      {"map.frozen", &settings.tracking.map_is_frozen, "", 0, 0,
+       "localisation only: the map of --map-in, or in the file, is read at the start, and nothing is added to it or "
+       "changed;\nit must be there, and the file is not written"},
 
       heading("recording", "The flight recorder of live runs"),
       text("recording.folder", &service.recordings_folder,
@@ -429,8 +433,7 @@ Keys methodKeys(Settings& settings) {
 
 std::vector<ConfigurationKey> configurationKeys(Configuration& configuration) {
   Keys keys = cameraKeys(configuration.capture);
-  for (ConfigurationKey& key : serviceKeys(configuration.service, configuration.settings.recording))
-    keys.push_back(key);
+  for (ConfigurationKey& key : serviceKeys(configuration.service, configuration.settings)) keys.push_back(key);
   for (ConfigurationKey& key : methodKeys(configuration.settings)) keys.push_back(key);
   return keys;
 }

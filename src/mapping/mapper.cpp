@@ -28,6 +28,7 @@ bool Mapper::add(const TrackedFrame& frame) {
     case FrameKind::keyframe:
       return addKeyframe(frame);
     case FrameKind::lost:
+    case FrameKind::elsewhere:
       break;
   }
   return false;

@@ -6,6 +6,7 @@
 
 #include "geometry/similarity.h"
 #include "tracking/edge_tracks.h"
+#include "tracking/view_centre.h"
 
 namespace edgeslam {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr std::size_t scratch_size = std::size_t{8} << 20;  // a frame that needs more allocates it
 constexpr int least_pyramid_levels = 6;
 constexpr std::size_t most_found_again = 4096;
+constexpr double few_left = 0.8;  // of the tracks there were when points of a frozen map were last looked for
 
 int pyramidLevels(const TrackerOptions& options) {
   return std::max(options.location.flow.levels, least_pyramid_levels);
@@ -109,8 +111,10 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   if (!mapStands() && (!located || (tooFewAreLeft() && !goOnFromSpare()))) {
     return startMap("starting anew: too few of the first frame's points are left", work);  // P13
   }
-  const bool is_told =
-      is_sharp && mapStands() && located && !mapping_busy && selectKeyframe(located, work);  // P8 to P12
+  bool is_told = false;
+  if (is_sharp && mapStands() && located && !mapping_busy) {
+    is_told = options_.map_is_frozen ? isToSeeElsewhere(for_mapping) : selectKeyframe(located, work);  // P8 to P12
+  }
   if (!located) {
     lose(work);
     return is_told;
@@ -191,8 +195,8 @@ bool Tracker::goOnFromSpare() {
 }
 
 bool Tracker::isToBeginWorld(std::int64_t time_ns) const {
-  if (!options_.worlds_enabled || !mapStands() || lost_since_ns_ < 0) return false;
-  return static_cast<double>(time_ns - lost_since_ns_) * 1e-9 > options_.new_world_seconds;
+  if (!options_.worlds_enabled || options_.map_is_frozen || !mapStands() || lost_since_ns_ < 0) return false;
+  return !isLostBriefly(time_ns);
 }
 
 // What was there is no longer tracked, but is looked for.
@@ -268,10 +272,32 @@ void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& wor
   work.clock.finished(Stage::choice_of_points);
 }
 
-void Tracker::reuseMapWhenDue(Work& work) {
+// In a frozen map: true where the camera came nearer to another keyframe than to that which the view is around.
+bool Tracker::isToSeeElsewhere(TrackedFrame& for_mapping) {
+  const KeyframeId nearest = nearestKeyframe(view_, frame_.world_T_camera, frame_.scene_depth, centre_);
+  if (nearest == centre_) return false;
+  centre_ = nearest;
+  describe(camera_, frame_, {FrameKind::elsewhere, nearest, "", noise_.factor(), view_.world}, for_mapping);
+  return true;
+}
+
+// A frozen map's points are all there is to track, so that they are looked for as soon as they become few.
+bool Tracker::isReuseDue() const {
   const int interval = options_.map_reuse.interval;
-  if (!mapStands() || keyframes_.frames() % interval != interval - 1) return;
+  if (!options_.map_is_frozen) return keyframes_.frames() % interval == interval - 1;
+  const double few = few_left * static_cast<double>(tracks_at_reuse_);
+  return since_reuse_ + 1 >= interval || static_cast<double>(frame_.tracks.size()) <= few || tracks_at_reuse_ == 0;
+}
+
+void Tracker::reuseMapWhenDue(Work& work) {
+  if (!mapStands()) return;
+  if (!isReuseDue()) {
+    ++since_reuse_;
+    return;
+  }
   reuseMap(frame_);
+  since_reuse_ = 0;
+  tracks_at_reuse_ = frame_.tracks.size();
   work.clock.finished(Stage::map_reuse);
 }
 
@@ -328,7 +354,7 @@ void Tracker::remember() {
   is_lost_ = false;
   lost_since_ns_ = -1;
   motion_.observe(lastCamera(), {frame_.images->time_ns, frame_.world_T_camera});
-  keyframes_.follow(frame_);
+  if (!options_.map_is_frozen) keyframes_.follow(frame_);
   std::swap(last_, frame_);
 }
 
@@ -355,13 +381,20 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult
 }
 
 void Tracker::lose(Work& work) {
-  predict(work.time_ns, "", work.result);
-  describe(figures_, work.result.reason);
-  work.result.state = TrackingState::lost;
-  work.result.has_pose = false;
-  work.result.world = -1;
+  FrameResult& result = work.result;
+  predict(work.time_ns, "", result);
+  describe(figures_, result.reason);
   beLostSince(work.time_ns);
   frame_is_lost_ = is_lost_ = true;
+  // What a frozen map does not show is bridged; a map that grows shows what was there a moment ago.
+  if (options_.map_is_frozen && result.has_pose && isLostBriefly(work.time_ns)) return;
+  result.state = TrackingState::lost;
+  result.has_pose = false;
+  result.world = -1;
+}
+
+bool Tracker::isLostBriefly(std::int64_t time_ns) const {
+  return static_cast<double>(time_ns - lost_since_ns_) * 1e-9 <= options_.new_world_seconds;
 }
 
 void Tracker::beLostSince(std::int64_t time_ns) {
@@ -396,6 +429,9 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   spare_.forget();
   if (!points.empty()) last_.tracks.clear();
   for (const FoundAgain& found : points) last_.tracks.push_back(trackOf(found));
+  if (options_.map_is_frozen) compareWithMap(view, last_.tracks);
+  centre_ = view.centre;
+  tracks_at_reuse_ = 0;
   std::sort(last_.tracks.begin(), last_.tracks.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
   last_.world_T_camera = world_T_camera;
   last_.twist.setZero();
@@ -427,6 +463,7 @@ void Tracker::adopt(MapView& view) {
                               moved(*new_S_old, keyframe.twist)});
   }
   std::swap(view_, view);
+  tracks_at_reuse_ = 0;
   motion_.scale(new_S_old->scale);
   const Pose moved_pose = moved(*new_S_old, last_.world_T_camera);
   if (is_first) {
