@@ -119,7 +119,7 @@ Keys serviceKeys(ServiceOptions& service, Settings& settings) {
       {"lcm.map_interval_s", &service.map_interval_s, "s", 0, 3600,
        "the map is sent at most so often where it changed; 0: on request only"},
 
-      heading("map", "The map on the disk, of `edgeslam run`; and whether it is only localised in"),
+      heading("map", "The map on the disk, of `edgeslam run`"),
       text("map.file", &service.map_file,
            "written at the end, on SIGHUP and on command, whole or not at all; relative to the working directory",
            "robot.map"),
