@@ -50,9 +50,9 @@ TEST(JoinMap, TwoMapsOfOneRoomBecomeOne) {
   const Map added = inItsOwnFrame(makePlace(7, placeCamera(), second), 2.5);
   const std::size_t points = map.points.size() + added.points.size();
   const MapJoining joining = joinMap(placeCamera(), Settings(), added, map);
-  ASSERT_TRUE(joining.is_joined) << joining.alike << " alike: " << joining.nearest;
-  EXPECT_EQ(joining.keyframes, 16);
-  EXPECT_GE(joining.loops, 1);
+  ASSERT_TRUE(joining.is_joined) << joining.found << " found, " << joining.agreeing << " agree";
+  EXPECT_EQ(joining.keyframes, 32);
+  EXPECT_GE(joining.agreeing + static_cast<std::size_t>(joining.loops), 1U);
   EXPECT_EQ(mapProblem(placeCamera(), map), "");
   EXPECT_EQ(worldsOf(map), std::vector<int>{0});
   EXPECT_EQ(map.keyframes.size(), 32U);
@@ -75,7 +75,8 @@ TEST(JoinMap, TheMapOfAnotherRoomIsRefusedAndNothingChanges) {
   const Map before = map, added = makePlace(8, placeCamera(), around(0, 12));
   const MapJoining joining = joinMap(placeCamera(), Settings(), added, map);
   EXPECT_FALSE(joining.is_joined);
-  EXPECT_EQ(joining.keyframes, 12);
+  EXPECT_EQ(joining.keyframes, 24);
+  EXPECT_EQ(joining.agreeing, 0U);
   EXPECT_EQ(joining.loops, 0);
   ASSERT_EQ(map.keyframes.size(), before.keyframes.size());
   EXPECT_EQ(map.points.size(), before.points.size());

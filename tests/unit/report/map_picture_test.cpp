@@ -34,7 +34,9 @@ TEST(DrawMapFromAbove, WorldsAreBesideEachOtherAndNotWithoutBound) {
     other.observations.clear();
     other.world_T_camera.translation = {1e12, -1e12, 1e12};
     saved.map.keyframes.push_back(other);
-    if (world == 1) EXPECT_EQ(drawMapFromAbove(saved.map).cols, 2 * one.width);
+    if (world == 1) {
+      EXPECT_EQ(drawMapFromAbove(saved.map).cols, 2 * one.width);
+    }
   }
   const cv::Size many = drawMapFromAbove(saved.map).size();
   EXPECT_LE(many.area(), 12 * one.area());
