@@ -27,11 +27,12 @@ std::vector<std::size_t> agreeingWith(const Similarity& to_S_from, const std::ve
   return agreeing;
 }
 
-// Of all pairs of cameras the alignment that most agree with.
+// Of pairs of cameras, evenly chosen where there are many, the alignment that most of all agree with.
 WorldAlignment bestOfPairs(const std::vector<FoundInBoth>& cameras, const WorldAlignmentOptions& options) {
+  const std::size_t step = 1 + cameras.size() / options.most_paired;
   WorldAlignment best;
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    for (std::size_t j = i + 1; j < cameras.size(); ++j) {
+  for (std::size_t i = 0; i < cameras.size(); i += step) {
+    for (std::size_t j = i + step; j < cameras.size(); j += step) {
       const double from = (cameras[j].from_T_camera.translation - cameras[i].from_T_camera.translation).norm();
       const double to = (cameras[j].to_T_camera.translation - cameras[i].to_T_camera.translation).norm();
       if (!(from > 0) || to < options.least_baseline * std::max(cameras[i].distance, cameras[j].distance)) continue;

@@ -22,6 +22,7 @@ struct WorldAlignmentOptions {
   double position = 0.15;       // ... and share of the scene's distance
   double least_baseline = 0.1;  // of two cameras that tell the scale: share of the scene's distance
   double largest_scale = 10;    // of the one unit in the other, or its inverse
+  std::size_t most_paired = 100;
 };
 
 struct WorldAlignment {
