@@ -463,6 +463,7 @@ void Tracker::adopt(MapView& view) {
                               moved(*new_S_old, keyframe.twist)});
   }
   std::swap(view_, view);
+  centre_ = view_.centre;  // what was asked for meanwhile is asked for once more
   tracks_at_reuse_ = 0;
   motion_.scale(new_S_old->scale);
   const Pose moved_pose = moved(*new_S_old, last_.world_T_camera);
