@@ -14,7 +14,18 @@ namespace {
 constexpr std::size_t scratch_size = std::size_t{8} << 20;  // a frame that needs more allocates it
 constexpr int least_pyramid_levels = 6;
 constexpr std::size_t most_found_again = 4096;
-constexpr double few_left = 0.8;  // of the tracks there were when points of a frozen map were last looked for
+constexpr int fewest_of_frozen_map = 40;  // points of it that must agree with a pose
+constexpr double few_left = 0.8;          // of the tracks there were when points of a frozen map were last looked for
+
+// Without tracks beside the map's points, which hold the others to account as the map grows, a few points at its edge
+// may agree with a pose that slides away, and a position that is held with one that was never measured.
+LocationOptions locationOptions(const TrackerOptions& options) {
+  LocationOptions location = options.location;
+  if (!options.map_is_frozen) return location;
+  location.orientation_only.enabled = false;
+  location.acceptance.fewest_points = fewest_of_frozen_map;
+  return location;
+}
 
 int pyramidLevels(const TrackerOptions& options) {
   return std::max(options.location.flow.levels, least_pyramid_levels);
@@ -67,7 +78,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       options_(options),
       most_tracks_(static_cast<std::size_t>(points.count)),
       preparation_(camera, {edges, points.accuracy, options.blur_gate, pyramidLevels(options)}),
-      location_(camera, options.location),
+      location_(camera, locationOptions(options)),
       keyframes_(camera, options.keyframes, points),
       noise_(options.noise),
       scratch_memory_(scratch_size),
