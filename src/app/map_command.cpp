@@ -104,12 +104,12 @@ std::vector<NamedMap> readMaps(const std::vector<std::string>& paths, Camera& ca
 }
 
 std::string refusalOf(const std::string& path, const MapJoining& joining) {
-  return path +
-         formatted(
-             ": no place of it is found in the other maps: of %d keyframes of both %d are found in the other, of which "
-             "%zu agree; of %d pairs that look alike %d are loops",
-             joining.keyframes, joining.found, joining.agreeing, joining.alike, joining.loops) +
-         (joining.nearest_loop.empty() ? "" : ", the nearest refused: " + joining.nearest_loop);
+  const std::string nearest = joining.nearest_loop.empty() ? "" : ", the nearest refused: " + joining.nearest_loop;
+  const std::string figures = formatted(
+      ": no place of it is found in the other maps: of %d keyframes of both %d are found in the other, of which %zu "
+      "agree; of %d pairs that look alike %d are loops",
+      joining.keyframes, joining.found, joining.agreeing, joining.alike, joining.loops);
+  return path + figures + nearest;
 }
 
 std::string successOf(const std::string& path, const MapJoining& joining) {
