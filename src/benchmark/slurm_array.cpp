@@ -101,11 +101,7 @@ std::vector<std::string> slurmOptions(const std::string& text) {
   return words;
 }
 
-SlurmArray::SlurmArray(const SlurmSettings& settings)
-    : settings_(settings),
-      sbatch_(programInPath("sbatch")),
-      squeue_(programInPath("squeue")),
-      scancel_(programInPath("scancel")) {
+SlurmArray::SlurmArray(const SlurmSettings& settings) : settings_(settings) {
   for (const std::string& option : settings.options) {
     if (option.rfind("--array", 0) == 0 || option.rfind("-a", 0) == 0) {
       throw InputError("--slurm: " + option + " cannot be given: the array is of the sequences; --jobs limits it");
@@ -128,6 +124,7 @@ std::string SlurmArray::path(int index, const std::string& ending) const {
 void SlurmArray::start(std::size_t number, const std::vector<std::string>& command, const std::string& log_path) {
   if (!job_.empty()) throw std::logic_error("an array that was handed over takes no more tasks");
   if (folder_.empty()) {
+    sbatch_ = programInPath("sbatch"), squeue_ = programInPath("squeue"), scancel_ = programInPath("scancel");
     std::string pattern = settings_.output + "/slurm-XXXXXX";
     if (mkdtemp(pattern.data()) == nullptr) throw InputError(pattern + ": cannot be made: " + std::strerror(errno));
     folder_ = pattern;

@@ -26,10 +26,11 @@ std::vector<std::string> slurmOptions(const std::string& text);
 // hands them over.
 class SlurmArray : public RunPlace {
  public:
-  // Throws InputError where sbatch, squeue or scancel is not in the PATH, or the options have an array of their own.
+  // Throws InputError where the options have an array of their own.
   explicit SlurmArray(const SlurmSettings& settings);
   ~SlurmArray() override;
 
+  // Throws InputError where sbatch, squeue or scancel is not in the PATH, or the folder cannot be written.
   void start(std::size_t number, const std::vector<std::string>& command, const std::string& log_path) override;
   std::size_t running() const override { return tasks_.size(); }
   bool isUnderWay(std::size_t number) const override;

@@ -44,8 +44,10 @@ INSTEAD = {
     "edgeslam evaluate ESTIMATE GROUNDTRUTH [--alignment similarity|rigid|none] [--tolerance S] [--delta S] [--json FILE]":
         Instead(SYNOPSIS, [f"edgeslam evaluate result/trajectory.txt groundtruth.txt --alignment {alignment} "
                            "--tolerance 0.02 --delta 1 --json error.json" for alignment in ("similarity", "rigid", "none")]),
-    "edgeslam benchmark DIR [--output DIR] [--jobs N] [--config FILE] [--only NAME,...] [--again]": Instead(
-        SYNOPSIS, ["edgeslam benchmark my_data --output all --jobs 1 --config my_robot.yaml --only first,second --again"]),
+    "edgeslam benchmark DIR [--output DIR] [--jobs N] [--config FILE] [--only NAME,...] [--again] [--slurm [OPTIONS]]": Instead(
+        SYNOPSIS + "; nothing is left for Slurm, which tests/system/slurm has",
+        ["edgeslam benchmark my_data --output all --jobs 1 --config my_robot.yaml --only first,second --again",
+         "edgeslam benchmark my_data --output all --config my_robot.yaml --slurm"]),
     "edgeslam report RUN RUN [RUN...] | DIR [--output FILE.html]": Instead(
         SYNOPSIS, ["edgeslam report before after", "edgeslam report before after result --output three.html",
                    "edgeslam report all --output all.html"]),

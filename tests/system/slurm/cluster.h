@@ -33,7 +33,7 @@ class SlurmCluster {
   // The nodes see another, empty folder in place of `hidden`.
   explicit SlurmCluster(const std::string& hidden) {
     const std::string key = folder_.path("munge.key");
-    runsWell("umask 077; head -c 1024 /dev/urandom > " + key);
+    runsWell("umask 077; dd if=/dev/urandom bs=1024 count=1 of=" + key);
     start({"munged", "-F", "--force", "--key-file=" + key, "--socket=" + folder_.path("munge.socket"),
            "--pid-file=" + folder_.path("munge.pid"), "--log-file=" + folder_.path("munge.log"),
            "--seed-file=" + folder_.path("munge.seed")});
