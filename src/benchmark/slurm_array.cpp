@@ -255,6 +255,8 @@ void SlurmArray::noteStates(const std::string& answer, bool is_known) {
       task.gone_since_s = -1;
     } else if (task.gone_since_s < 0) {
       task.gone_since_s = now_s();
+      // One that is cancelled while it waits leaves the queue without a last state.
+      if (task.state.empty() || !hasEnded(task.state)) task.state = "gone from the queue";
     }
   }
 }

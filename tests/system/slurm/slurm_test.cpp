@@ -132,7 +132,7 @@ TEST_F(Slurm, interruptedItCancelsTheJobAndGoesOnLater) {
   for (const std::string& file : files("out")) EXPECT_EQ(file.find("slurm-"), std::string::npos) << file;
 }
 
-TEST_F(Slurm, aTaskThatSlurmEndsFailsWithItsState) {
+TEST_F(Slurm, aTaskThatSlurmEndsIsTold) {
   std::vector<std::string> command = words("out", {"--slurm", "--hold"});
   command.insert(command.begin(), EDGESLAM_PROGRAM);
   BackgroundProcess waiting(command);
@@ -143,7 +143,7 @@ TEST_F(Slurm, aTaskThatSlurmEndsFailsWithItsState) {
   ASSERT_EQ(runCommand({"scontrol", "release", job}).exit_code, 0);
   ASSERT_TRUE(comesTrue([&] { return waiting.says("index.html shows it all"); }, slurm_patience_s)) << waiting.said();
   EXPECT_EQ(waiting.exitCode(), 1);
-  EXPECT_TRUE(waiting.says("hall failed: Slurm ended job " + job + "_1 (CANCELLED)")) << waiting.said();
+  EXPECT_TRUE(waiting.says("hall failed: Slurm ended job " + job + "_1 (gone from the queue)")) << waiting.said();
   EXPECT_EQ(record("out")["runs"][2]["exit_code"], 0) << waiting.said();
 }
 
