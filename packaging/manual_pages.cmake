@@ -35,6 +35,7 @@ edgeslam_manual_page(edgeslam-benchmark "run over all sequences under a folder" 
 edgeslam_manual_page(edgeslam-simulate "make a sequence with exact ground truth" simulate)
 edgeslam_manual_page(edgeslam-listen "show what is published over LCM" listen)
 edgeslam_manual_page(edgeslam-calibrate "calibrate a camera with a printed board" calibrate)
+edgeslam_manual_page(edgeslam-map "what is in saved maps; several made into one; parts taken out" map)
 edgeslam_manual_page(edgeslam-mask "propose where the camera's images are not looked at" mask)
 edgeslam_manual_page(edgeslam-check-config "check a configuration or calibration" check-config)
 edgeslam_manual_page(edgeslam-cameras "list the cameras" cameras)

@@ -28,9 +28,13 @@ class EDGESLAM_PUBLIC LiveSlam {
   // Called by the same thread, with a line for each recovery, relocalisation and loop.
   using EventReceiver = std::function<void(const std::string&)>;
 
-  // A configuration as the program's, with a camera's calibration in it; its sections capture, lcm, map, recording and
-  // scale are not used. Throws InputError where it cannot be used.
+  // A configuration as the program's, with a camera's calibration in it; its sections capture, lcm, recording and scale
+  // are not used, and of the section map just `frozen`. Throws InputError where it cannot be used.
   LiveSlam(const std::string& configuration_file, PoseReceiver poses, EventReceiver events = {});
+  // Continues a map that was saved with the same calibration; with `map.frozen`, which needs one, it is only localised
+  // in, and stays as it is. Throws InputError.
+  LiveSlam(const std::string& configuration_file, const std::string& map_file, PoseReceiver poses,
+           EventReceiver events = {});
   // Stops at once.
   ~LiveSlam();
   LiveSlam(const LiveSlam&) = delete;

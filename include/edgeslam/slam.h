@@ -30,11 +30,12 @@ class EDGESLAM_PUBLIC Slam {
   int width() const;  // of the frames [px]
   int height() const;
 
-  // Before the first frame: continues a map that was saved with the same calibration. Throws InputError.
+  // Before the first frame: continues a map that was saved with the same calibration. With `map.frozen` in the
+  // configuration, which needs a map, it is only localised in, and stays as it is. Throws InputError.
   void goOnWith(const std::string& map_file);
 
   // The next frame. Throws InputError where its size is not the calibration's or its time stamp not after the last
-  // one's; nothing is changed then. `index` counts frames.
+  // one's, or a frozen map was not given; nothing is changed then. `index` counts frames.
   PosedFrame process(const GreyImage& image, std::int64_t time_ns);
   // A frame that could not be had; the pose, if any, is predicted.
   PosedFrame skip(std::int64_t time_ns, const std::string& problem);

@@ -13,6 +13,7 @@
 #include "benchmark/benchmark_record.h"
 #include "benchmark/benchmark_run.h"
 #include "benchmark/known_calibration.h"
+#include "benchmark/slurm_array.h"
 #include "configuration/configuration.h"
 #include "configuration/configuration_text.h"
 #include "files/atomic_file.h"
@@ -34,6 +35,9 @@ struct BenchmarkArguments {
   std::vector<std::string> only;
   int jobs = 0;  // 0: as many as cores are allowed
   bool again = false;
+  std::string slurm;                       // empty: on this machine
+  std::vector<std::string> slurm_options;  // for sbatch
+  std::string slurm_task;
 };
 
 int coresAllowed() {
@@ -146,6 +150,7 @@ BenchmarkPlan planOf(const BenchmarkArguments& arguments, const std::string& out
   for (const FoundSequence& sequence : chosen(search, arguments)) {
     if (names.insert(sequence.name).second) plan.runs.push_back(planned(arguments, sequence, output, before));
   }
+  if (!arguments.slurm.empty() && arguments.jobs == 0) plan.jobs = static_cast<int>(plan.runs.size());
   return plan;
 }
 
@@ -169,7 +174,33 @@ void bringUpToDate(BenchmarkRecord& record, const BenchmarkArguments& arguments,
   record.entries.erase(std::remove_if(record.entries.begin(), record.entries.end(), is_gone), record.entries.end());
 }
 
+// Ended as any other where it was: Slurm shows it then as failed.
+int runTask(const BenchmarkArguments& arguments) {
+  DaemonSignals signals;
+  const std::string program = fs::read_symlink("/proc/self/exe").string();
+  return runSlurmTask(program, arguments.slurm_task, [&signals] { return signals.end(); }) ? exit_done : exit_failed;
+}
+
+// Slurm is handed all runs at once; it has its own mind about how many go on.
+bool runOnSlurm(const BenchmarkArguments& arguments, BenchmarkPlan plan, BenchmarkRecord& record,
+                const BenchmarkListener& listener) {
+  SlurmSettings settings;
+  settings.program = plan.program, settings.output = plan.output;
+  settings.source = fs::canonical(arguments.folder).string();
+  settings.options = arguments.slurm_options;
+  settings.at_once = arguments.jobs;
+  plan.jobs = static_cast<int>(plan.runs.size());
+  SlurmArray array(settings);
+  const bool all_were_run = runBenchmark(plan, record, listener, array);
+  if (all_were_run || array.job().empty()) return all_were_run;
+  const bool is_cancelled = array.cancel();
+  std::cerr << "\nedgeslam: Slurm's job " << array.job()
+            << (is_cancelled ? " is cancelled\n" : " could not be cancelled; see `squeue`\n");
+  return false;
+}
+
 int runBenchmarkCommand(const BenchmarkArguments& arguments) {
+  if (!arguments.slurm_task.empty()) return runTask(arguments);
   DaemonSignals signals;  // before any thread or child
   makeOutput(arguments.output);
   const std::string output = fs::canonical(arguments.output).string();
@@ -186,7 +217,8 @@ int runBenchmarkCommand(const BenchmarkArguments& arguments) {
     line.clear();
     if (entry.exit_code != 0) std::cerr << "edgeslam: " << run.sequence.name << " failed: " << entry.message << "\n";
   };
-  const bool all_were_run = runBenchmark(plan, record, listener);
+  const bool all_were_run =
+      arguments.slurm.empty() ? runBenchmark(plan, record, listener) : runOnSlurm(arguments, plan, record, listener);
   line.clear();
 
   std::sort(record.entries.begin(), record.entries.end(),
@@ -204,6 +236,17 @@ int runBenchmarkCommand(const BenchmarkArguments& arguments) {
                        [&](const SetRun& shown) { return shown.name == run.sequence.name && shown.failed; });
   });
   return any_failed ? exit_failed : exit_done;
+}
+
+// Options that are not ours are sbatch's where it is Slurm that runs.
+void takeSlurmOptions(const CLI::App& command, BenchmarkArguments& arguments) {
+  std::vector<std::string> others = command.remaining();
+  if (arguments.slurm.empty() && !others.empty()) throw CLI::ExtrasError(command.get_name(), others);
+  constexpr const char* plain_flag = "true";
+  if (arguments.slurm != plain_flag) others.insert(others.begin(), arguments.slurm);
+  for (const std::string& text : others) {
+    for (const std::string& word : slurmOptions(text)) arguments.slurm_options.push_back(word);
+  }
 }
 
 }  // namespace
@@ -227,7 +270,16 @@ void addBenchmarkCommand(CLI::App& app, int& exit_code) {
                       "Configuration file (YAML) of all runs; without it the defaults");
   command->add_option("--only", arguments->only, "Names of the sequences to run, separated by commas")->delimiter(',');
   command->add_flag("--again", arguments->again, "Also repeat the runs that are finished");
-  command->callback([arguments, &exit_code] { exit_code = runBenchmarkCommand(*arguments); });
+  command->add_flag("--slurm", arguments->slurm,
+                    "Run them on a cluster, as one job array of Slurm. Options for sbatch may follow, as in "
+                    "--slurm=\"--partition=fast --time=1:00:00\"; --output is to be a folder that all nodes share");
+  command->add_option("--slurm-task", arguments->slurm_task, "One task of the array, which --slurm starts on a node")
+      ->group("");
+  command->allow_extras();  // sbatch's
+  command->callback([arguments, command, &exit_code] {
+    takeSlurmOptions(*command, *arguments);
+    exit_code = runBenchmarkCommand(*arguments);
+  });
 }
 
 }  // namespace edgeslam

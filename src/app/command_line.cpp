@@ -15,6 +15,7 @@
 #include "app/check_config_command.h"
 #include "app/evaluate_command.h"
 #include "app/listen_command.h"
+#include "app/map_command.h"
 #include "app/mask_command.h"
 #include "app/record_command.h"
 #include "app/replay_command.h"
@@ -56,6 +57,7 @@ int parseAndRun(int argc, const char* const* argv) {
   addSimulateCommand(app, exit_code);
   addListenCommand(app, exit_code);
   addCalibrateCommand(app, exit_code);
+  addMapCommand(app, exit_code);
   addMaskCommand(app, exit_code);
   addCheckConfigCommand(app, exit_code);
   addCamerasCommand(app, exit_code);

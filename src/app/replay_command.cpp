@@ -126,12 +126,17 @@ struct Replayed {
   Map map;
 };
 
-// A recording brings the map that its run went on with.
-std::string mapToGoOnWith(const ReplayArguments& arguments, const FrameSource& source) {
+// A recording brings the map that its run went on with. Empty: none.
+std::string mapToGoOnWith(const ReplayArguments& arguments, const FrameSource& source, const Settings& settings) {
   if (!arguments.map_in.empty()) return arguments.map_in;
-  const Recording* recording = source.recording();
+  const Recording* recording = arguments.realtime ? nullptr : source.recording();
   const std::string brought = recording ? recording->folder + "/" + recording_map_name : "";
-  return !brought.empty() && std::filesystem::exists(brought) ? brought : "";
+  if (!brought.empty() && std::filesystem::exists(brought)) return brought;
+  if (settings.tracking.map_is_frozen) {
+    throw InputError((arguments.configuration.empty() ? arguments.input : arguments.configuration) +
+                     ": map.frozen: there is no map to localise in; give one (--map-in)");
+  }
+  return "";
 }
 
 Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Settings& settings,
@@ -142,7 +147,8 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
     if (!decisions.note.empty()) std::cerr << "edgeslam: " << decisions.note << "\n";
     if (decisions.not_recorded == 0) run.repeat(runDecisions(decisions));
   }
-  if (const std::string map = mapToGoOnWith(arguments, source); !map.empty()) run.goOnWith(loadMap(map, camera));
+  if (const std::string map = mapToGoOnWith(arguments, source, settings); !map.empty())
+    run.goOnWith(loadMap(map, camera));
   processAll(source, camera, inertia, run);
   Replayed replayed;
   replayed.result = run.finish();
@@ -153,7 +159,8 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
 Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Configuration& configuration,
                           const ReplayArguments& arguments) {
   LiveReplay replay;
-  if (!arguments.map_in.empty()) replay.map_in = loadMap(arguments.map_in, camera);
+  const std::string map = mapToGoOnWith(arguments, source, configuration.settings);
+  if (!map.empty()) replay.map_in = loadMap(map, camera);
   replay.record_folder = arguments.record;
   replay.pace = arguments.pace;
   replay.description = {camera, formatRecordedConfiguration(configuration), EDGESLAM_VERSION};
@@ -261,7 +268,8 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   command->add_option("--output", arguments->output, "Folder for the results")->capture_default_str();
   command
       ->add_option("--map-in", arguments->map_in,
-                   "Saved map of the same camera: frames are found in it, and it is extended")
+                   "Saved map of the same camera: frames are found in it, and it is extended, or with map.frozen only "
+                   "localised in")
       ->check(named);
   command->add_option("--map-out", arguments->map_out, "File to save the map to at the end")->check(named);
   command->add_flag(

@@ -41,6 +41,16 @@ std::optional<Map> configuredMap(const std::string& path, const Camera& camera, 
   }
 }
 
+// A map that is only localised in must be there: nothing else can take its place.
+Map frozenMap(const RunArguments& arguments, const ServiceOptions& service, const Camera& camera) {
+  const std::string& path = arguments.map_in.empty() ? service.map_file : arguments.map_in;
+  if (path.empty()) {
+    throw InputError((arguments.configuration.empty() ? "" : arguments.configuration + ": ") +
+                     "map.frozen: there is no map to localise in; give one (map.file, or --map-in)");
+  }
+  return loadMap(path, camera);
+}
+
 DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
   DaemonSetup setup;
   if (!arguments.configuration.empty()) setup.configuration = readConfiguration(arguments.configuration);
@@ -56,9 +66,12 @@ DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
     setup.capture.height = setup.camera.height;
   }
   setup.record_folder = arguments.record;
-  setup.map_out = arguments.map_out.empty() ? service.map_file : arguments.map_out;
+  const bool is_frozen = setup.configuration.settings.tracking.map_is_frozen;
+  setup.map_out = arguments.map_out.empty() && !is_frozen ? service.map_file : arguments.map_out;
   if (!setup.map_out.empty()) requireMapCanBeSaved(setup.map_out);
-  if (!arguments.map_in.empty()) {
+  if (is_frozen) {
+    setup.map_in = frozenMap(arguments, service, setup.camera);
+  } else if (!arguments.map_in.empty()) {
     setup.map_in = loadMap(arguments.map_in, setup.camera);
   } else if (service.goes_on_with_map && !service.map_file.empty()) {
     setup.map_in = configuredMap(service.map_file, setup.camera, log);
@@ -87,7 +100,10 @@ void addRunCommand(CLI::App& app, int& exit_code) {
       ->check(named);
   command->add_option("--record", arguments->record, "Folder for a recording of this run, from the start")
       ->check(named);
-  command->add_option("--map-in", arguments->map_in, "Saved map of the same camera, which is extended")->check(named);
+  command
+      ->add_option("--map-in", arguments->map_in,
+                   "Saved map of the same camera, which is extended, or with map.frozen only localised in")
+      ->check(named);
   command->add_option("--map-out", arguments->map_out, "File for the map (default: map.file of the configuration)")
       ->check(named);
   command->callback([arguments, &exit_code] { exit_code = runService(*arguments); });

@@ -6,6 +6,7 @@
 
 #include "app/command_line.h"
 #include "configuration/input_configuration.h"
+#include "map/saved_map.h"
 #include "recording/open_frame_source.h"
 #include "service/daemon.h"
 
@@ -13,7 +14,7 @@ namespace edgeslam {
 namespace {
 
 struct ViewArguments {
-  std::string input, configuration;
+  std::string input, configuration, map_in;
   int port = -1;  // the configuration's
 };
 
@@ -35,6 +36,11 @@ DaemonSetup setupOf(const ViewArguments& arguments) {
   service.recordings_folder.clear();
   service.records_from_start = false;
   service.viewer.enabled = true;
+  if (!arguments.map_in.empty()) {
+    setup.map_in = loadMap(arguments.map_in, setup.camera);
+  } else if (setup.configuration.settings.tracking.map_is_frozen) {
+    throw InputError(arguments.configuration + ": map.frozen: there is no map to localise in; give one (--map-in)");
+  }
   if (arguments.port >= 0) service.viewer.port = arguments.port;
   if (const std::string wrong = viewerProblem(service.viewer); !wrong.empty()) throw InputError(wrong);
   return setup;
@@ -58,6 +64,9 @@ void addViewCommand(CLI::App& app, int& exit_code) {
                    "As of `edgeslam replay`: folder of a dataset, folder of images, video, recording of a live run")
       ->required();
   command->add_option("--config", arguments->configuration, "Configuration file (YAML); its section viewer: counts");
+  command->add_option("--map-in", arguments->map_in,
+                      "Saved map of the same camera: frames are found in it, and it is extended, or with map.frozen "
+                      "only localised in");
   command->add_option("--port", arguments->port, "Of the page, TCP (default: viewer.port, 8417); 0: a free one")
       ->check(CLI::Range(0, 65535));
   command->callback([arguments, &exit_code] { exit_code = runView(*arguments); });

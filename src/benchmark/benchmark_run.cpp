@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "benchmark/child_processes.h"
 #include "benchmark/json_reader.h"
 #include "report/run_files.h"
 
@@ -54,8 +55,8 @@ std::string logOf(const std::string& path) {
 // One benchmark that is going on.
 class Benchmark {
  public:
-  Benchmark(const BenchmarkPlan& plan, BenchmarkRecord& record, const BenchmarkListener& listener)
-      : plan_(plan), record_(record), listener_(listener) {
+  Benchmark(const BenchmarkPlan& plan, BenchmarkRecord& record, const BenchmarkListener& listener, RunPlace& place)
+      : plan_(plan), record_(record), listener_(listener), place_(place) {
     for (std::size_t i = 0; i < plan.runs.size(); ++i) {
       if (plan.runs[i].is_finished) {
         ++done_;
@@ -75,10 +76,10 @@ class Benchmark {
 
   bool run() {
     constexpr double patience_s = 0.1;
-    while (!waiting_.empty() || children_.running() > 0) {
+    while (!waiting_.empty() || place_.running() > 0) {
       if (listener_.stop()) return false;
-      while (!waiting_.empty() && static_cast<int>(children_.running()) < plan_.jobs) startNext();
-      const std::optional<ChildEnd> end = children_.waitForOne(patience_s);
+      while (!waiting_.empty() && static_cast<int>(place_.running()) < plan_.jobs) startNext();
+      const std::optional<RunEnd> end = place_.waitForOne(patience_s);
       if (end) note(*end);
       listener_.going(progress());
     }
@@ -97,11 +98,11 @@ class Benchmark {
       command.emplace_back("--config");
       command.push_back(run.configuration_path);
     }
-    children_.start(number, command, folder + "/run.log");
+    place_.start(number, command, folder + "/run.log");
     running_.push_back(number);
   }
 
-  void note(const ChildEnd& end) {
+  void note(const RunEnd& end) {
     const PlannedRun& run = plan_.runs[end.number];
     running_.erase(std::find(running_.begin(), running_.end(), end.number));
     BenchmarkEntry& entry = entryFor(record_, run);
@@ -123,19 +124,25 @@ class Benchmark {
     BenchmarkProgress progress;
     progress.total = plan_.runs.size();
     progress.done = done_, progress.failed = failed_;
-    for (const std::size_t number : running_) progress.running.push_back(plan_.runs[number].sequence.name);
+    for (const std::size_t number : running_) {
+      if (place_.isUnderWay(number)) progress.running.push_back(plan_.runs[number].sequence.name);
+    }
     if (timed_frames_ <= 0) return progress;
     double frames = 0;  // of the running ones half, on average
-    for (const std::size_t number : running_) frames += 0.5 * static_cast<double>(plan_.runs[number].sequence.frames);
+    for (const std::size_t number : running_) {
+      const double left = place_.isUnderWay(number) ? 0.5 : 1;
+      frames += left * static_cast<double>(plan_.runs[number].sequence.frames);
+    }
     for (const std::size_t number : waiting_) frames += static_cast<double>(plan_.runs[number].sequence.frames);
-    progress.left_s = frames * timed_s_ / timed_frames_ / plan_.jobs;
+    const std::size_t at_once = std::max(progress.running.size(), std::size_t{1});
+    progress.left_s = frames * timed_s_ / timed_frames_ / static_cast<double>(at_once);
     return progress;
   }
 
   const BenchmarkPlan& plan_;
   BenchmarkRecord& record_;
   const BenchmarkListener& listener_;
-  ChildProcesses children_;
+  RunPlace& place_;
   std::vector<std::size_t> waiting_, running_;  // numbers in the plan, the next one last
   std::size_t done_ = 0, failed_ = 0;
   double timed_frames_ = 0, timed_s_ = 0;  // of the runs that ended well
@@ -157,7 +164,8 @@ std::string formatProgress(const BenchmarkProgress& progress) {
   return line;
 }
 
-std::string failureMessage(const ChildEnd& end, const std::string& log, const std::string& log_path) {
+std::string failureMessage(const RunEnd& end, const std::string& log, const std::string& log_path) {
+  if (!end.problem.empty()) return end.problem;
   if (end.exit_code < 0) {
     return std::string("ended by signal ") + std::to_string(end.signal) + " (" + strsignal(end.signal) + "); see " +
            log_path;
@@ -175,7 +183,13 @@ std::string failureMessage(const ChildEnd& end, const std::string& log, const st
 }
 
 bool runBenchmark(const BenchmarkPlan& plan, BenchmarkRecord& record, const BenchmarkListener& listener) {
-  return Benchmark(plan, record, listener).run();
+  ChildProcesses children;
+  return runBenchmark(plan, record, listener, children);
+}
+
+bool runBenchmark(const BenchmarkPlan& plan, BenchmarkRecord& record, const BenchmarkListener& listener,
+                  RunPlace& place) {
+  return Benchmark(plan, record, listener, place).run();
 }
 
 }  // namespace edgeslam

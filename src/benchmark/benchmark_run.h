@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "benchmark/benchmark_record.h"
-#include "benchmark/child_processes.h"
+#include "benchmark/run_place.h"
 #include "benchmark/sequence_search.h"
 
 namespace edgeslam {
@@ -36,7 +36,7 @@ struct BenchmarkProgress {
 std::string formatProgress(const BenchmarkProgress& progress);
 
 // Why a run failed: its last message, or how it ended. `log` is what it said.
-std::string failureMessage(const ChildEnd& end, const std::string& log, const std::string& log_path);
+std::string failureMessage(const RunEnd& end, const std::string& log, const std::string& log_path);
 
 // How the one who waits is told.
 struct BenchmarkListener {
@@ -48,5 +48,9 @@ struct BenchmarkListener {
 // Brings `record` up to date after each run and writes it; entries of sequences that are not planned stay as they are.
 // False where it was stopped before all were run. Throws InputError where a folder cannot be made or written.
 bool runBenchmark(const BenchmarkPlan& plan, BenchmarkRecord& record, const BenchmarkListener& listener);
+
+// The same at another place than beside this program.
+bool runBenchmark(const BenchmarkPlan& plan, BenchmarkRecord& record, const BenchmarkListener& listener,
+                  RunPlace& place);
 
 }  // namespace edgeslam

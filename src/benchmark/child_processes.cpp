@@ -58,13 +58,13 @@ void ChildProcesses::start(std::size_t number, const std::vector<std::string>& c
   children_[child] = {number, now_s()};
 }
 
-std::optional<ChildEnd> ChildProcesses::takeEnded() {
+std::optional<RunEnd> ChildProcesses::takeEnded() {
   for (auto child = children_.begin(); child != children_.end(); ++child) {
     int status = 0;
     rusage used{};
     const pid_t ended = wait4(child->first, &status, WNOHANG, &used);
     if (ended == 0) continue;
-    ChildEnd end;
+    RunEnd end;
     end.number = child->second.number;
     if (ended > 0 && WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
     if (ended > 0 && WIFSIGNALED(status)) end.signal = WTERMSIG(status);
@@ -77,10 +77,10 @@ std::optional<ChildEnd> ChildProcesses::takeEnded() {
   return std::nullopt;
 }
 
-std::optional<ChildEnd> ChildProcesses::waitForOne(double patience_s) {
+std::optional<RunEnd> ChildProcesses::waitForOne(double patience_s) {
   const double until_s = now_s() + patience_s;
   while (true) {
-    std::optional<ChildEnd> end = takeEnded();
+    std::optional<RunEnd> end = takeEnded();
     if (end || children_.empty() || now_s() >= until_s) return end;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

@@ -95,7 +95,8 @@ Keys cameraKeys(CameraOptions& capture) {
 }
 
 // What `edgeslam run` gives out and keeps.
-Keys serviceKeys(ServiceOptions& service, RecordingSpace& space) {
+Keys serviceKeys(ServiceOptions& service, Settings& settings) {
+  RecordingSpace& space = settings.recording;
   LcmOptions& lcm = service.lcm;
   ScaleOptions& scale = service.scale;
   ViewerOptions& viewer = service.viewer;
@@ -139,6 +140,9 @@ Keys serviceKeys(ServiceOptions& service, RecordingSpace& space) {
            "robot.map"),
       {"map.go_on", &service.goes_on_with_map, "", 0, 0,
        "at the start, continue the map in the file, where there is one: the camera is looked for in it"},
+      {"map.frozen", &settings.tracking.map_is_frozen, "", 0, 0,
+       "localisation only: the map of --map-in, or in the file, is read at the start, and nothing is added to it or "
+       "changed;\nit must be there, and the file is not written"},
 
       heading("recording", "The flight recorder of live runs"),
       text("recording.folder", &service.recordings_folder,
@@ -444,8 +448,7 @@ Keys methodKeys(Settings& settings) {
 
 std::vector<ConfigurationKey> configurationKeys(Configuration& configuration) {
   Keys keys = cameraKeys(configuration.capture);
-  for (ConfigurationKey& key : serviceKeys(configuration.service, configuration.settings.recording))
-    keys.push_back(key);
+  for (ConfigurationKey& key : serviceKeys(configuration.service, configuration.settings)) keys.push_back(key);
   for (ConfigurationKey& key : methodKeys(configuration.settings)) keys.push_back(key);
   return keys;
 }

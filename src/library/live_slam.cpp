@@ -4,16 +4,23 @@
 #include <utility>
 
 #include "library/conversion.h"
+#include "map/saved_map.h"
 #include "pipeline/live_run.h"
 
 namespace edgeslam {
 
 struct LiveSlam::Work {
-  Work(const Configuration& configuration, PoseReceiver pose_receiver, EventReceiver event_receiver)
+  Work(const Configuration& configuration, const std::string& map_file, PoseReceiver pose_receiver,
+       EventReceiver event_receiver)
       : camera(*configuration.camera),
         poses(std::move(pose_receiver)),
         events(std::move(event_receiver)),
         run(camera, configuration.settings, liveOptions(configuration.settings.threads), observer(), nullptr) {
+    if (!map_file.empty()) {
+      run.goOnWith(loadMap(map_file, camera));
+    } else if (configuration.settings.tracking.map_is_frozen) {
+      throw InputError("map.frozen: there is no map to localise in; give one to the constructor");
+    }
     run.start();
   }
 
@@ -44,8 +51,12 @@ struct LiveSlam::Work {
 };
 
 LiveSlam::LiveSlam(const std::string& configuration_file, PoseReceiver poses, EventReceiver events)
-    : work_(std::make_unique<Work>(libraryConfiguration("", configuration_file), std::move(poses), std::move(events))) {
-}
+    : LiveSlam(configuration_file, "", std::move(poses), std::move(events)) {}
+
+LiveSlam::LiveSlam(const std::string& configuration_file, const std::string& map_file, PoseReceiver poses,
+                   EventReceiver events)
+    : work_(std::make_unique<Work>(libraryConfiguration("", configuration_file), map_file, std::move(poses),
+                                   std::move(events))) {}
 
 LiveSlam::~LiveSlam() = default;
 

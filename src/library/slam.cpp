@@ -12,9 +12,12 @@ namespace edgeslam {
 
 struct Slam::Work {
   explicit Work(const Configuration& configuration)
-      : camera(*configuration.camera), run(camera, configuration.settings, 0, /*drawings=*/0) {}
+      : camera(*configuration.camera),
+        needs_map(configuration.settings.tracking.map_is_frozen),
+        run(camera, configuration.settings, 0, /*drawings=*/0) {}
 
   Camera camera;
+  bool needs_map;  // before the first frame
   LockstepRun run;
   CameraOdometry odometry;
   std::int64_t frames = 0;
@@ -25,6 +28,7 @@ struct Slam::Work {
 
   void requireOpen() const {
     if (finished) throw InputError("no frame can follow after finish()");
+    if (needs_map) throw InputError("map.frozen: there is no map to localise in; give one by goOnWith()");
   }
   PosedFrame latest() {
     ++frames;
@@ -48,6 +52,7 @@ int Slam::height() const { return work_->camera.height; }
 void Slam::goOnWith(const std::string& map_file) {
   if (work_->frames > 0) throw InputError(map_file + ": a saved map can be continued before the first frame only");
   work_->run.goOnWith(loadMap(map_file, work_->camera));
+  work_->needs_map = false;
 }
 
 PosedFrame Slam::process(const GreyImage& image, std::int64_t time_ns) {

@@ -48,7 +48,8 @@ enum class FrameKind {
   start,     // follows the first frame, while the map does not stand yet
   spare,     // besides, another start may go on from it (tracking/spare_start.h)
   keyframe,  // extends the map
-  lost       // its pose was lost and is looked for
+  lost,      // its pose was lost and is looked for
+  elsewhere  // the map, which is frozen, is to be shown around another keyframe
 };
 
 // A frame on its way to mapping: every frame while there is no map, keyframes and lost frames afterwards.
@@ -61,8 +62,9 @@ struct TrackedFrame {
   std::vector<PointObservation> observations;
   std::vector<SeenEdge> straight_edges;       // that at least three of them lie on
   std::shared_ptr<const FrameImages> images;  // null for FrameKind::start
-  KeyframeId keyframe =
-      -1;  // its number, of a lost frame the one that it gets if it is recovered; -1 for FrameKind::start
+  // Its number; of a lost frame the one that it gets if it is recovered; for FrameKind::elsewhere the keyframe of the
+  // map; -1 for FrameKind::start.
+  KeyframeId keyframe = -1;
   const char* reason = "";  // which criterion made it a keyframe
   double noise_factor = 1;  // how many times as far as presumed measurements in it err
   int world = 0;            // that its pose is in, or, of a lost frame, that the last pose was in

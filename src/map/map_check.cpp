@@ -10,7 +10,6 @@ constexpr double unit_tolerance = 1e-5;  // of a length; normals are measured in
 // Beyond every map, pixel or distortion; its square and cube are still far from infinity.
 constexpr double largest_number = 1e12;
 constexpr std::int64_t largest_time_ns = 4'000'000'000'000'000'000;  // the difference of two still fits
-constexpr std::int64_t largest_count = largest_time_ns;              // of frames and points
 
 // All false for NaN.
 bool isBounded(double value) { return std::abs(value) <= largest_number; }

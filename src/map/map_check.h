@@ -10,6 +10,7 @@ namespace edgeslam {
 
 // Much is kept by keyframe number, so numbers must not run away. At one keyframe a second this is half a year.
 constexpr KeyframeId largest_keyframe_id = (1 << 24) - 1;
+constexpr std::int64_t largest_count = 4'000'000'000'000'000'000;  // of frames, points and lines
 
 // The first thing that is wrong with a camera, in words; empty where nothing is. Sizes are positive and bounded,
 // numbers finite.

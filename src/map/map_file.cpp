@@ -319,9 +319,9 @@ std::string encodeMap(const SavedMap& saved) {
 }
 
 SavedMap decodeMap(std::string_view bytes, const std::string& name) {
-  std::uint32_t version = 0;
-  ByteReader payload = openPayload(bytes, name, version);
   SavedMap saved;
+  std::uint32_t& version = saved.version;
+  ByteReader payload = openPayload(bytes, name, version);
   saved.camera = readCamera(openSection(payload, camera_section), version);
   readKeyframes(openSection(payload, keyframe_section), {saved.camera.width, saved.camera.height}, version, saved.map);
   readPoints(openSection(payload, point_section), saved.map);

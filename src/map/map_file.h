@@ -44,6 +44,7 @@ constexpr std::uint32_t map_format_version = 3;
 struct SavedMap {
   Camera camera;  // whose pixels the observations are
   Map map;
+  std::uint32_t version = map_format_version;  // of the file that it was read from
 };
 
 // Encodes a map, the same one to the same bytes. Of a keyframe's images only level 0 is written, without loss; images

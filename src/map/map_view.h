@@ -37,6 +37,7 @@ struct MapView {
   int world = 0;                   // all of the view is of one
   std::int64_t origin_frame = -1;  // of the latest start: a view of an attempt that was given up is told by it
   KeyframeId latest_keyframe = 0;  // of all worlds
+  KeyframeId centre = -1;          // its points are those around this keyframe; -1 before the map stands
   std::int64_t corrections = 0;    // of the map as a whole: loops, worlds that were joined
   bool initialised = false;        // false: a provisional, flat-depth map from the first frame; poses are not given out
   std::string waiting_for;         // why not, in words that a user understands

@@ -63,9 +63,14 @@ void requireMapCanBeSaved(const std::string& path) {
   }
 }
 
-Map loadMap(const std::string& path, const Camera& camera) {
+SavedMap readMap(const std::string& path) {
   SavedMap saved = decodeMap(readWhole(path), path);
   if (saved.map.keyframes.empty()) throw InputError(path + ": the map has no keyframe");
+  return saved;
+}
+
+Map loadMap(const std::string& path, const Camera& camera) {
+  SavedMap saved = readMap(path);
   if (saved.camera == camera) return std::move(saved.map);
   std::string problem = path + ": the map was made with another calibration than that of these frames";
   const double readout_s = std::exchange(saved.camera.readout_s, camera.readout_s);

@@ -14,8 +14,10 @@ void saveMap(const std::string& path, const Camera& camera, const Map& map);
 // stands there, its folder is not there, or nothing can be written in it.
 void requireMapCanBeSaved(const std::string& path);
 
-// Throws InputError where there is no such file, it is no map that decodeMap takes, it has no keyframe, or was made
-// with another calibration than `camera`.
+// Throws InputError where there is no such file, it is no map that decodeMap takes, or it has no keyframe.
+SavedMap readMap(const std::string& path);
+
+// Throws InputError where readMap does, or where the map was made with another calibration than `camera`.
 Map loadMap(const std::string& path, const Camera& camera);
 
 }  // namespace edgeslam

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <iterator>
 
+#include "map/keyframe_removal.h"
 #include "map/worlds.h"
 
 namespace edgeslam {
@@ -33,70 +34,16 @@ Need needFor(const CullingOptions& options, const Map& map, const Keyframe& keyf
   return need;
 }
 
-// The point's place stays; its depth is now told from the first keyframe that saw it besides its host.
-void hostElsewhere(const Map& map, MapPoint& point) {
-  const Eigen::Vector3d position = worldPosition(map, point);
-  const KeyframeId host = point.seen_in.front();
-  const Eigen::Vector3d seen = map.keyframes[host].world_T_camera.inverse() * position;
-  const double relative_sigma = point.inverse_depth_sigma / point.inverse_depth;
-  point.seen_in.erase(point.seen_in.begin());
-  point.host = host;
-  point.host_bearing = seen.normalized();
-  point.inverse_depth = 1 / seen.norm();
-  point.inverse_depth_sigma = relative_sigma * point.inverse_depth;
-}
-
-// A line that no other keyframe sees is gone.
-void takeOutOfLines(const Keyframe& keyframe, Map& map) {
-  for (auto place = map.lines.begin(); place != map.lines.end();) {
-    MapLine& line = place->second;
-    line.seen_in.erase(std::remove(line.seen_in.begin(), line.seen_in.end(), keyframe.id), line.seen_in.end());
-    if (line.seen_in.empty()) {
-      place = map.lines.erase(place);
-      continue;
-    }
-    if (line.host == keyframe.id) {
-      const SpaceLine in_world = inWorld(map, line);
-      line.host = line.seen_in.front();
-      setInWorld(in_world, map, line);
-    }
-    ++place;
-  }
-}
-
-// The motion to the next keyframe is now told from the one before.
-void joinLinksOver(const Keyframe& keyframe, Map& map) {
-  for (Keyframe& later : map.keyframes) {
-    InertialLink& link = later.inertia;
-    if (link.from != keyframe.id) continue;
-    link.from = keyframe.inertia.from;
-    if (link.from >= 0) link.motion = joined(keyframe.inertia.motion, link.motion);
-  }
-}
-
 CulledKeyframe takeOut(KeyframeId id, Map& map, Candidates& candidates) {
-  const Keyframe& keyframe = map.keyframes[id];
-  for (const PointObservation& observation : keyframe.observations) {
-    const auto found = map.points.find(observation.point);
-    if (found == map.points.end()) continue;
-    MapPoint& point = found->second;
-    if (point.host == id && !point.seen_in.empty()) {
-      hostElsewhere(map, point);
-    } else {
-      point.seen_in.erase(std::remove(point.seen_in.begin(), point.seen_in.end(), id), point.seen_in.end());
-    }
-    if (point.seen_in.empty()) map.points.erase(found);
-  }
-  takeOutOfLines(keyframe, map);
   for (auto candidate = candidates.begin(); candidate != candidates.end();) {
     std::vector<KeyframeId>& views = candidate->second;
     views.erase(std::remove(views.begin(), views.end(), id), views.end());
     candidate = views.empty() ? candidates.erase(candidate) : std::next(candidate);
   }
-  joinLinksOver(keyframe, map);
   const Keyframe& kept = map.keyframes[keyframeBefore(map, id)];
-  const CulledKeyframe culled{id, kept.id, kept.world_T_camera.inverse() * keyframe.world_T_camera, kept.world};
-  map.keyframes.erase(id);
+  const CulledKeyframe culled{id, kept.id, kept.world_T_camera.inverse() * map.keyframes[id].world_T_camera,
+                              kept.world};
+  removeKeyframe(id, map);
   return culled;
 }
 

@@ -29,6 +29,7 @@ bool Mapper::add(const TrackedFrame& frame) {
     case FrameKind::keyframe:
       return addKeyframe(frame);
     case FrameKind::lost:
+    case FrameKind::elsewhere:
       break;
   }
   return false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "geometry/angles.h"
 #include "geometry/median.h"
@@ -45,20 +46,39 @@ std::vector<char> keyframesInView(const Map& map, KeyframeId centre, const ViewO
   return in_view;
 }
 
-void writeSource(const Map& map, const MapPoint& point, ViewPoint& view_point) {
-  const auto take = [&](KeyframeId id) {
-    const Keyframe& keyframe = map.keyframes[id];
-    if (!keyframe.images) return false;
-    const PointObservation* observation = findObservation(keyframe, point.id);
-    view_point.source = id;
-    view_point.source_measurement = observation->measurement;
-    view_point.corner = observation->corner;
-    return true;
-  };
+// The latest keyframe with images that saw the point, or -1.
+KeyframeId latestSource(const Map& map, const MapPoint& point) {
   for (auto id = point.seen_in.rbegin(); id != point.seen_in.rend(); ++id) {
-    if (take(*id)) return;
+    if (map.keyframes[*id].images) return *id;
   }
-  take(point.host);
+  return map.keyframes[point.host].images ? point.host : -1;
+}
+
+// The one among them that saw it most nearly from where the camera of `centre` is.
+KeyframeId nearestSource(const Map& map, const MapPoint& point, const Keyframe& centre) {
+  const Eigen::Vector3d position = worldPosition(map, point);
+  const Eigen::Vector3d ray = position - centre.world_T_camera.translation;
+  KeyframeId nearest = -1;
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](KeyframeId id) {
+    const Keyframe& keyframe = map.keyframes[id];
+    if (!keyframe.images) return;
+    const double difference = (ray - (position - keyframe.world_T_camera.translation)).norm();
+    if (difference >= least) return;
+    least = difference;
+    nearest = id;
+  };
+  consider(point.host);
+  for (const KeyframeId id : point.seen_in) consider(id);
+  return nearest;
+}
+
+void writeSource(const Map& map, const MapPoint& point, KeyframeId source, ViewPoint& view_point) {
+  if (source < 0) return;
+  const PointObservation* observation = findObservation(map.keyframes[source], point.id);
+  view_point.source = source;
+  view_point.source_measurement = observation->measurement;
+  view_point.corner = observation->corner;
 }
 
 }  // namespace
@@ -68,6 +88,7 @@ MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options)
   MapView view;
   view.world = map.keyframes[centre].world;
   if (const auto known = map.inertia.find(view.world); known != map.inertia.end()) view.inertia = known->second;
+  view.centre = centre;
   for (const Keyframe& keyframe : map.keyframes) {
     if (keyframe.world != view.world) continue;
     view.keyframes.push_back({keyframe.id, keyframe.world_T_camera, nullptr, keyframe.uncertainty, keyframe.twist});
@@ -82,7 +103,9 @@ MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options)
     view_point.host_bearing = point.host_bearing;
     view_point.inverse_depth = point.inverse_depth;
     view_point.inverse_depth_sigma = point.inverse_depth_sigma;
-    writeSource(map, point, view_point);
+    const KeyframeId source =
+        options.nearest_sources ? nearestSource(map, point, map.keyframes[centre]) : latestSource(map, point);
+    writeSource(map, point, source, view_point);
     if (view_point.source >= 0) {
       view.keyframes[view_point.source].images = map.keyframes[view_point.source].images;
     }

@@ -12,6 +12,9 @@ struct ViewOptions {
   int near_keyframes = 12;        // older ones, most
   double largest_turn_deg = 40;   // between their directions of view and the latest one's
   double largest_distance = 0.7;  // between their centres and the latest one's, as a share of its median depth
+  // Points are found again by how the keyframe nearest to the centre saw them; otherwise by how the latest one did,
+  // which is where the camera is while the map grows.
+  bool nearest_sources = false;
 };
 
 // Of the world of `centre`, the keyframe near which the camera is: the latest one, or the one against which it was

@@ -23,7 +23,7 @@ void LiveMapping::run() {
     const bool at_once = channels_.stopping.load(std::memory_order_acquire) == Stopping::at_once;
     if (at_once && tracking_ended) break;
     const bool changed = mapOnce();
-    if (changed) countMap();
+    if (changed && !worker_.mapIsFrozen()) countMap();
     if (map_asked_.load(std::memory_order_acquire)) reportMap();
     if (changed) continue;
     if (tracking_ended && with_places_ == 0) break;

@@ -4,6 +4,13 @@
 
 namespace edgeslam {
 
+// The camera comes to a frozen map's places from anywhere, not from where the latest keyframe was.
+MapperOptions MappingWorker::mapperOptions(const Settings& settings) {
+  MapperOptions options = settings.mapping;
+  options.view.nearest_sources = settings.tracking.map_is_frozen;
+  return options;
+}
+
 void MappingWorker::goOnWith(Map map) {
   mapper_.goOnWith(std::move(map));
   relocalisation_.update(mapper_.map());
@@ -18,6 +25,10 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
   if (message.frame.kind == FrameKind::lost) {
     find(message);
     return nextUpdate();
+  }
+  if (message.frame.kind == FrameKind::elsewhere) {
+    mapper_.goBackTo(message.frame.keyframe);
+    return nextUpdate(message.frame.keyframe);
   }
   const std::size_t worlds_given_up = mapper_.startsGivenUp();
   const bool was_initialised = mapper_.initialised(), was_metric = mapper_.knownAlignment() != nullptr;
@@ -116,11 +127,11 @@ std::optional<Snapshot> MappingWorker::snapshot() const {
   return Snapshot{last_message_, last_frame_, std::make_shared<const Map>(mapper_.map())};
 }
 
-MapUpdate MappingWorker::nextUpdate() {
+MapUpdate MappingWorker::nextUpdate(KeyframeId centre) {
   MapUpdate update;
   update.number = next_update_++;
   update.answers = last_message_;
-  update.view = mapper_.view(found_ ? found_reference_ : -1);
+  update.view = mapper_.view(found_ ? found_reference_ : centre);
   update.found = found_;
   update.not_found = not_found_;
   return update;

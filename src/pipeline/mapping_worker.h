@@ -17,7 +17,7 @@ class MappingWorker {
  public:
   MappingWorker(const Camera& camera, const Settings& settings)
       : settings_(settings),
-        mapper_(camera, settings.mapping),
+        mapper_(camera, mapperOptions(settings)),
         relocalisation_(camera, settings.points.accuracy, settings.relocalisation) {}
 
   // Before the first message: continues a map made earlier, of the same camera.
@@ -36,15 +36,19 @@ class MappingWorker {
   // What was done since this was last asked.
   std::vector<MappingReport> takeReports() { return std::exchange(reports_, {}); }
 
+  // Nothing is added to the map: it is only localised in.
+  bool mapIsFrozen() const { return settings_.tracking.map_is_frozen; }
   const Mapper& mapper() const { return mapper_; }
 
  private:
+  static MapperOptions mapperOptions(const Settings& settings);
   void find(const MappingMessage& message);
   bool recover(const MappingMessage& message);
   void relocalise(const MappingMessage& message);
   void goOnFrom(TrackingState how, KeyframeId reference, const Pose& world_T_camera, const Matrix6d& covariance,
                 std::vector<FoundAgain> points, const std::string& event);
-  MapUpdate nextUpdate();
+  // `centre` -1: around where the camera was found, or around the latest keyframe.
+  MapUpdate nextUpdate(KeyframeId centre = -1);
   MappingReport& report(std::int64_t frame_index);
 
   Settings settings_;

@@ -12,7 +12,8 @@ constexpr int frames_with_tracks = 10;  // after a loss: later, hardly a track r
 }  // namespace
 
 TrackingWorker::TrackingWorker(const Camera& camera, const Settings& settings)
-    : relocalise_(settings.relocalisation_enabled || settings.mapping.recovery_enabled),
+    : recovers_(settings.mapping.recovery_enabled && !settings.tracking.map_is_frozen),
+      is_looked_for_(settings.relocalisation_enabled || recovers_),
       tracker_(camera, settings.edges, settings.points, settings.tracking) {
   for (std::string* text : {&result_.reason, &not_found_, &start_reason_}) text->reserve(longest_reason);
   for_mapping_.observations.reserve(static_cast<std::size_t>(settings.points.count));
@@ -71,7 +72,7 @@ MappingMessage& TrackingWorker::nextMessage(FrameMessages& messages) {
 }
 
 bool TrackingWorker::isToAskWhere(std::int64_t time_ns) const {
-  if (!relocalise_ || asked_ >= 0) return false;
+  if (!is_looked_for_ || asked_ >= 0) return false;
   return tracker_.hasLostFrame() || (tracker_.startsBesideOthers() && time_ns - asked_ns_ >= search_interval_ns);
 }
 
@@ -87,7 +88,7 @@ void TrackingWorker::askWhere(std::int64_t time_ns, MappingMessage& message) {
   message.edges = tracker_.keptEdges();
   message.last_good_pose = last_good_pose_;
   message.seconds_since = static_cast<double>(time_ns - last_good_ns_) * 1e-9;
-  message.recover = !message.starting && last_good_pose_ && lost_frames_ <= frames_with_tracks;
+  message.recover = recovers_ && !message.starting && last_good_pose_ && lost_frames_ <= frames_with_tracks;
   asked_frame_ = message.frame.frame_index;
 }
 

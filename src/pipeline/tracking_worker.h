@@ -51,7 +51,8 @@ class TrackingWorker {
   bool isToAskWhere(std::int64_t time_ns) const;
   void askWhere(std::int64_t time_ns, MappingMessage& message);
 
-  bool relocalise_ = true;
+  bool recovers_ = true;       // lost frames are made keyframes (P21)
+  bool is_looked_for_ = true;  // where a frame is lost
   Tracker tracker_;
   FrameResult result_;
   TrackedFrame for_mapping_;

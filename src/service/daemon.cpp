@@ -116,6 +116,12 @@ Daemon::RunEnd Daemon::capture(LiveRun& run) {
 // A recording repeats a run only from its start: the run to come continues the map of the one before, which is kept
 // with the recording.
 void Daemon::beginNext(const Command& command, LiveRun& run) {
+  if (command.kind == CommandKind::reset && setup_.configuration.settings.tracking.map_is_frozen) {
+    start_ = RunStart::saved_map;
+    map_ = run.mapper().map();
+    log_.tell("begun anew in the map, which is frozen");
+    return link_.answer(command, true, "begun anew in the map, which is frozen");
+  }
   if (command.kind == CommandKind::reset) {
     start_ = RunStart::new_map;
     log_.tell("the map is forgotten, begun anew");

@@ -1,15 +1,19 @@
 #include "service/live_replay.h"
 
 #include <chrono>
+#include <exception>
 #include <iostream>
 #include <memory>
 #include <thread>
 #include <utility>
 
 #include "frames/frame_problem.h"
+#include "map/saved_map.h"
 #include "pipeline/live_run.h"
 #include "pipeline/run_record.h"
 #include "recording/flight_recorder.h"
+#include "recording/recording_layout.h"
+#include "service/failure_message.h"
 #include "service/run_publisher.h"
 
 namespace edgeslam {
@@ -25,6 +29,16 @@ void tell(const std::vector<RefusedSetup>& problems) {
     std::cerr << (&problem == &problems.front() ? "" : "; ") << problem.text;
   }
   std::cerr << " (threads: in the configuration)\n";
+}
+
+// With the recording of a run that goes on with it: otherwise it could not be repeated.
+void keepMap(const Map& map, const Camera& camera, const std::string& folder) {
+  try {
+    saveMap(folder + "/" + recording_map_name, camera, map);
+  } catch (const std::exception& error) {
+    std::cerr << "edgeslam: the recording will not repeat the run, its map is not with it: " << failureMessage(error)
+              << "\n";
+  }
 }
 
 // Each frame at its time.
@@ -55,6 +69,7 @@ LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Set
   if (!replay.record_folder.empty()) {
     recorder =
         std::make_shared<FlightRecorder>(replay.record_folder, replay.description, recordingLimits(settings.recording));
+    if (replay.map_in) keepMap(*replay.map_in, camera, replay.record_folder);
   }
   RunRecord record(camera);
   LiveObserver observer;

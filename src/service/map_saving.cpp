@@ -22,15 +22,18 @@ CommandOutcome save(const Map& map, const Camera& camera, const std::string& fil
 
 }  // namespace
 
-MapSaving::MapSaving(const Camera& camera, const std::string& file, CommandAnswers& answers, BackgroundWork& disk_work,
-                     EventLog& log)
-    : camera_(camera), file_(file), answers_(answers), disk_work_(disk_work), log_(log) {}
+MapSaving::MapSaving(const Camera& camera, const std::string& file, bool is_frozen, CommandAnswers& answers,
+                     BackgroundWork& disk_work, EventLog& log)
+    : camera_(camera), file_(file), is_frozen_(is_frozen), answers_(answers), disk_work_(disk_work), log_(log) {}
 
 void MapSaving::end() { answer(std::exchange(wishes_, {}), {false, "the run ended before the map could be saved"}); }
 
 void MapSaving::ask(const std::optional<Command>& command) {
   assert(run_);
-  if (file_.empty()) return answer({command}, {false, "no file is configured for the map (map.file)"});
+  if (file_.empty()) {
+    return answer({command}, {false, is_frozen_ ? "the map is frozen (map.frozen): there is nothing new to save"
+                                                : "no file is configured for the map (map.file)"});
+  }
   wishes_.push_back(command);
   run_->askForMap();
 }

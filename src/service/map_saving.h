@@ -17,9 +17,10 @@ namespace edgeslam {
 // For the publishing thread.
 class MapSaving {
  public:
-  // `file`: empty: the map is not saved. What is referred to outlives it; work that was begun may outlive this object.
-  MapSaving(const Camera& camera, const std::string& file, CommandAnswers& answers, BackgroundWork& disk_work,
-            EventLog& log);
+  // `file`: empty: the map is not saved, for it `is_frozen` or nobody named one. What is referred to outlives it; work
+  // that was begun may outlive this object.
+  MapSaving(const Camera& camera, const std::string& file, bool is_frozen, CommandAnswers& answers,
+            BackgroundWork& disk_work, EventLog& log);
 
   void begin(LiveRun& run) { run_ = &run; }
   // What was asked for and did not come is answered so.
@@ -38,6 +39,7 @@ class MapSaving {
 
   const Camera camera_;
   const std::string file_;
+  const bool is_frozen_;
   CommandAnswers& answers_;
   BackgroundWork& disk_work_;
   EventLog& log_;

@@ -12,6 +12,7 @@ PublishingSetup publishingSetup(const Configuration& configuration, const Camera
   setup.body_T_camera = configuration.body_T_camera;
   setup.camera = camera;
   setup.scale = service.scale;
+  setup.map_is_frozen = configuration.settings.tracking.map_is_frozen;
   if (service.scale.source == "odometry") setup.lcm.wheels_channel = service.scale.odometry.channel;
   return setup;
 }

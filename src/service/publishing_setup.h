@@ -19,7 +19,8 @@ struct PublishingSetup {
   Pose body_T_camera;         // translation [m]
   Camera camera;
   ScaleOptions scale;
-  std::string map_file;      // empty: no command saves the map
+  std::string map_file;  // empty: no command saves the map
+  bool map_is_frozen = false;
   Viewer* viewer = nullptr;  // null: nobody can look on; must outlive the publisher
   bool begins_anew = false;  // capture carries out commands that begin another run: reset, start of a recording
 };

@@ -25,7 +25,7 @@ RunPublisher::RunPublisher(const PublishingSetup& setup, CaptureLink& link, Even
       answers_(publisher_, viewer_),
       scale_(setup.scale, setup.body_T_camera, publisher_, work_, log),
       map_(setup.camera, setup.map_interval_s, publisher_, ros2_.get(), viewer_, work_),
-      saving_(setup.camera, setup.map_file, answers_, disk_work_, log),
+      saving_(setup.camera, setup.map_file, setup.map_is_frozen, answers_, disk_work_, log),
       recording_(answers_, disk_work_, log),
       commands_({link_, map_, saving_, recording_, scale_}, answers_, setup.begins_anew),
       log_(log) {}

@@ -29,10 +29,20 @@ bool nearTrack(const std::vector<Track>& tracks, const Eigen::Vector2f& pixel, f
 
 }  // namespace
 
+void compareWithMap(const MapView& view, std::vector<Track>& tracks) {
+  for (Track& track : tracks) {
+    const ViewPoint* point = findPoint(view, track.id);
+    if (!point || point->source < 0) continue;
+    track.keyframe = point->source;
+    track.keyframe_images = view.keyframes[point->source].images;
+    track.keyframe_pixel = point->source_measurement.pixel.cast<float>();
+  }
+}
+
 void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages& images, const EdgeMap& edges,
                     const MovingCamera& moving, std::size_t most, const MapReuseOptions& options,
                     std::vector<Track>& tracks, std::pmr::memory_resource* memory) {
-  if (!options.enabled) return;
+  if (!options.enabled || tracks.size() >= most) return;
   SearchPoints points(memory);
   points.reserve(view.points.size());
   std::size_t t = 0;

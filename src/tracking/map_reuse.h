@@ -23,4 +23,7 @@ void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages
                     const MovingCamera& moving, std::size_t most, const MapReuseOptions& options,
                     std::vector<Track>& tracks, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
+// From now on tracks of points of the view are compared with the patch of the keyframe that they are found again by.
+void compareWithMap(const MapView& view, std::vector<Track>& tracks);
+
 }  // namespace edgeslam

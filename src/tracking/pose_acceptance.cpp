@@ -8,6 +8,7 @@ namespace edgeslam {
 int fewestInliers(std::size_t in_view, const AcceptanceContext& context, const AcceptanceOptions& options) {
   const auto visible = static_cast<double>(in_view), before = static_cast<double>(context.inliers_before);
   double fewest = std::max(options.least_inlier_share * visible, options.least_points_share * before);
+  fewest = std::max<double>(fewest, options.fewest_points);
   if (context.regains) {
     const double most_of_them =
         std::max(options.regain_inlier_share * visible, options.regain_fewest_points_share * before);

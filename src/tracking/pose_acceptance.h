@@ -17,6 +17,7 @@ struct AcceptanceOptions {
   // ... or fewer of them, where these are most of the map points in view.
   double regain_fewest_points_share = 0.3;
   double regain_inlier_share = 0.6;
+  int fewest_points = 0;  // nor with fewer than so many
 };
 
 // What a pose is judged against.

@@ -7,6 +7,7 @@
 
 #include "geometry/similarity.h"
 #include "tracking/edge_tracks.h"
+#include "tracking/view_centre.h"
 
 namespace edgeslam {
 namespace {
@@ -14,6 +15,18 @@ namespace {
 constexpr std::size_t scratch_size = std::size_t{8} << 20;  // a frame that needs more allocates it
 constexpr int least_pyramid_levels = 6;
 constexpr std::size_t most_found_again = 4096;
+constexpr int fewest_of_frozen_map = 40;  // points of it that must agree with a pose
+constexpr double few_left = 0.8;          // of the tracks there were when points of a frozen map were last looked for
+
+// Without tracks beside the map's points, which hold the others to account as the map grows, a few points at its edge
+// may agree with a pose that slides away, and a position that is held with one that was never measured.
+LocationOptions locationOptions(const TrackerOptions& options) {
+  LocationOptions location = options.location;
+  if (!options.map_is_frozen) return location;
+  location.orientation_only.enabled = false;
+  location.acceptance.fewest_points = fewest_of_frozen_map;
+  return location;
+}
 
 int pyramidLevels(const TrackerOptions& options) {
   return std::max(options.location.flow.levels, least_pyramid_levels);
@@ -66,7 +79,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       options_(options),
       most_tracks_(static_cast<std::size_t>(points.count)),
       preparation_(camera, {edges, points.accuracy, options.blur_gate, pyramidLevels(options)}),
-      location_(camera, options.location),
+      location_(camera, locationOptions(options)),
       keyframes_(camera, options.keyframes, points),
       inertia_(options.inertia),
       noise_(options.noise),
@@ -111,8 +124,10 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   if (!mapStands() && (!located || (tooFewAreLeft() && !goOnFromSpare()))) {
     return startMap("starting anew: too few of the first frame's points are left", work);  // P13
   }
-  const bool is_told =
-      is_sharp && mapStands() && located && !mapping_busy && selectKeyframe(located, work);  // P8 to P12
+  bool is_told = false;
+  if (is_sharp && mapStands() && located && !mapping_busy) {
+    is_told = options_.map_is_frozen ? isToSeeElsewhere(for_mapping) : selectKeyframe(located, work);  // P8 to P12
+  }
   if (!located) {
     lose(work);
     return is_told;
@@ -194,8 +209,8 @@ bool Tracker::goOnFromSpare() {
 }
 
 bool Tracker::isToBeginWorld(std::int64_t time_ns) const {
-  if (!options_.worlds_enabled || !mapStands() || lost_since_ns_ < 0) return false;
-  return static_cast<double>(time_ns - lost_since_ns_) * 1e-9 > options_.new_world_seconds;
+  if (!options_.worlds_enabled || options_.map_is_frozen || !mapStands() || lost_since_ns_ < 0) return false;
+  return !isLostBriefly(time_ns);
 }
 
 // What was there is no longer tracked, but is looked for.
@@ -276,10 +291,32 @@ void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& wor
   work.clock.finished(Stage::choice_of_points);
 }
 
-void Tracker::reuseMapWhenDue(Work& work) {
+// In a frozen map: true where the camera came nearer to another keyframe than to that which the view is around.
+bool Tracker::isToSeeElsewhere(TrackedFrame& for_mapping) {
+  const KeyframeId nearest = nearestKeyframe(view_, frame_.world_T_camera, frame_.scene_depth, centre_);
+  if (nearest == centre_) return false;
+  centre_ = nearest;
+  describe(camera_, frame_, {FrameKind::elsewhere, nearest, "", noise_.factor(), view_.world}, for_mapping);
+  return true;
+}
+
+// A frozen map's points are all there is to track, so that they are looked for as soon as they become few.
+bool Tracker::isReuseDue() const {
   const int interval = options_.map_reuse.interval;
-  if (!mapStands() || keyframes_.frames() % interval != interval - 1) return;
+  if (!options_.map_is_frozen) return keyframes_.frames() % interval == interval - 1;
+  const double few = few_left * static_cast<double>(tracks_at_reuse_);
+  return since_reuse_ + 1 >= interval || static_cast<double>(frame_.tracks.size()) <= few || tracks_at_reuse_ == 0;
+}
+
+void Tracker::reuseMapWhenDue(Work& work) {
+  if (!mapStands()) return;
+  if (!isReuseDue()) {
+    ++since_reuse_;
+    return;
+  }
   reuseMap(frame_);
+  since_reuse_ = 0;
+  tracks_at_reuse_ = frame_.tracks.size();
   work.clock.finished(Stage::map_reuse);
 }
 
@@ -338,7 +375,7 @@ void Tracker::remember() {
   motion_.observe(lastCamera(), {frame_.images->time_ns, frame_.world_T_camera});
   inertia_.observe({frame_.images->time_ns, frame_.world_T_camera},
                    std::sqrt(withSharedNoise(frame_.covariance).topLeftCorner<3, 3>().trace() / 3));
-  keyframes_.follow(frame_);
+  if (!options_.map_is_frozen) keyframes_.follow(frame_);
   std::swap(last_, frame_);
 }
 
@@ -391,16 +428,22 @@ void Tracker::goOnByInertia(const InertialPrediction& prediction, FrameResult& r
 }
 
 void Tracker::lose(Work& work) {
-  scratch_reason_.clear();
-  describe(figures_, scratch_reason_);
-  predict(work.time_ns, scratch_reason_, work.result);
-  if (!isGoodPose(work.result.state)) {
-    work.result.state = TrackingState::lost;
-    work.result.has_pose = false;
-    work.result.world = -1;
-  }
+  FrameResult& result = work.result;
+  lost_reason_.clear();
+  describe(figures_, lost_reason_);
+  predict(work.time_ns, lost_reason_, result);
   beLostSince(work.time_ns);
   frame_is_lost_ = is_lost_ = true;
+  if (isGoodPose(result.state)) return;  // by inertia
+  // What a frozen map does not show is bridged; a map that grows shows what was there a moment ago.
+  if (options_.map_is_frozen && result.has_pose && isLostBriefly(work.time_ns)) return;
+  result.state = TrackingState::lost;
+  result.has_pose = false;
+  result.world = -1;
+}
+
+bool Tracker::isLostBriefly(std::int64_t time_ns) const {
+  return static_cast<double>(time_ns - lost_since_ns_) * 1e-9 <= options_.new_world_seconds;
 }
 
 void Tracker::beLostSince(std::int64_t time_ns) {
@@ -437,6 +480,9 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   spare_.forget();
   if (!points.empty()) last_.tracks.clear();
   for (const FoundAgain& found : points) last_.tracks.push_back(trackOf(found));
+  if (options_.map_is_frozen) compareWithMap(view, last_.tracks);
+  centre_ = view.centre;
+  tracks_at_reuse_ = 0;
   std::sort(last_.tracks.begin(), last_.tracks.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
   last_.world_T_camera = world_T_camera;
   last_.twist.setZero();
@@ -479,6 +525,8 @@ void Tracker::adopt(MapView& view) {
                               moved(*new_S_old, keyframe.twist)});
   }
   std::swap(view_, view);
+  centre_ = view_.centre;  // what was asked for meanwhile is asked for once more
+  tracks_at_reuse_ = 0;
   motion_.scale(new_S_old->scale);
   if (new_S_old->scale != 1) inertia_.forget();
   const Pose moved_pose = moved(*new_S_old, last_.world_T_camera);

@@ -53,7 +53,12 @@ struct TrackerOptions {
   std::optional<InertialUnit> inertia;  // that goes with the camera; none: the camera alone
   InertiaOnlyOptions inertia_only;
   bool worlds_enabled = true;
-  double new_world_seconds = 1;  // so long after a loss a new world is begun beside those that were lost
+  // So long after a loss a new world is begun beside those that were lost, or, in a frozen map, poses are no longer
+  // predicted.
+  double new_world_seconds = 1;
+  // The map is only localised in: no frame becomes a keyframe, and no points are chosen. Only a run that goes on with a
+  // saved map can be so.
+  bool map_is_frozen = false;
 };
 
 class Tracker {
@@ -71,7 +76,7 @@ class Tracker {
 
   // `grey`: CV_8U of the camera's size. Frames come in the order of their time stamps. `mapping_busy`: it can be told
   // nothing now, so that this frame becomes no keyframe. `result` is written over. True where mapping is to be told
-  // `for_mapping`: this frame, or the one before that became a keyframe late.
+  // `for_mapping`: this frame, or the one before that became a keyframe late; or where a frozen map is to be shown.
   bool track(std::int64_t frame_index, std::int64_t time_ns, const cv::Mat& grey, bool mapping_busy,
              FrameResult& result, TrackedFrame& for_mapping);
 
@@ -133,6 +138,8 @@ class Tracker {
   bool selectKeyframe(bool& located, Work& work);
   void keepEdgesOfStart(FollowedFrame& frame);
   void becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work);
+  bool isToSeeElsewhere(TrackedFrame& for_mapping);
+  bool isReuseDue() const;
   void reuseMapWhenDue(Work& work);
   void reuseMap(FollowedFrame& frame);
   void tell(Work& work);
@@ -145,6 +152,7 @@ class Tracker {
   void lose(Work& work);
   void linkFromLatestKeyframe();
   void beLostSince(std::int64_t time_ns);
+  bool isLostBriefly(std::int64_t time_ns) const;
 
   Camera camera_;
   TrackerOptions options_;
@@ -162,7 +170,7 @@ class Tracker {
   FollowedFrame frame_;  // the current one
   FollowedFrame last_;   // the last frame that was located
   LocationFigures figures_;
-  std::string scratch_reason_;
+  std::string lost_reason_;
   FollowedFrame kept_;           // a lost frame that others look for
   KeyframeId kept_number_ = -1;  // that it gets if it is recovered as a keyframe
   bool frame_is_lost_ = false;
@@ -172,6 +180,9 @@ class Tracker {
   SpareStart spare_;                            // while the map does not stand
   std::size_t tracks_at_start_ = 0;             // of the first frame of a map that does not stand yet
   int faded_frames_ = 0;                        // in a row, in which too few of these are left
+  KeyframeId centre_ = -1;                      // of a frozen map: the view is around it, or was asked for
+  int since_reuse_ = 0;                         // frames since points of a frozen map were looked for ...
+  std::size_t tracks_at_reuse_ = 0;             // ... and the tracks that there were then; 0: it is due
   int worlds_ = 0;                              // that were tracked in
   int last_world_ = 0;                          // that the last pose was in
 };

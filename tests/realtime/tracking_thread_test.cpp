@@ -12,6 +12,7 @@
 
 #include "frames/frame_source.h"
 #include "pipeline/live_run.h"
+#include "pipeline/lockstep_run.h"
 #include "realtime/watched_thread.h"
 #include "recording/open_frame_source.h"
 #include "simulator/simulator.h"
@@ -87,8 +88,10 @@ void feed(LiveRun& run, std::int64_t index, std::int64_t time_ns, const cv::Mat&
   }
 }
 
+// `frozen`: a map that is only localised in; none: one is made.
 template <typename FeedAll>
-WatchedRun watch(const Camera& camera, const FeedAll& feedAll, bool is_looked_at = false) {
+WatchedRun watch(const Camera& camera, const FeedAll& feedAll, bool is_looked_at = false,
+                 const std::optional<Map>& frozen = std::nullopt) {
   WatchedRun result;
   std::optional<Onlooker> onlooker;
   if (is_looked_at) onlooker.emplace(result);
@@ -101,7 +104,10 @@ WatchedRun watch(const Camera& camera, const FeedAll& feedAll, bool is_looked_at
   NoRecorder recorder;
   LiveOptions options;
   watchThreadNamed(options.tracking.name);
-  LiveRun run(camera, Settings(), options, observer, &recorder);
+  Settings settings;
+  settings.tracking.map_is_frozen = frozen.has_value();
+  LiveRun run(camera, settings, options, observer, &recorder);
+  if (frozen) run.goOnWith(*frozen);
   if (onlooker) run.showTo(onlooker->looks());
   run.start();
   feedAll(run);
@@ -175,6 +181,25 @@ TEST(TrackingThread, NorWhileSomeoneLooksOn) {
   EXPECT_GT(run.good, 40);
   EXPECT_GT(run.looks, 40);
   EXPECT_GT(run.looks_at_lost_frames, 0);
+}
+
+// Nor where a map is only localised in: with other views of it taken over, predicted, lost and found again.
+TEST(TrackingThread, NorInAFrozenMap) {
+  if (!canWatchThreads()) GTEST_SKIP() << "not under sanitizers";
+  const SimulatedSequence sequence = troubledSequence();
+  LockstepRun mapping(sequence.camera, Settings(), sequence.size(), 0);
+  for (int i = 0; i < sequence.size(); ++i) {
+    const SimulatedFrame frame = sequence.frame(i);
+    mapping.process(i, frame.time_ns, frame.grey);
+  }
+  mapping.settle();
+  ASSERT_FALSE(mapping.map().keyframes.empty());
+  const WatchedRun run = watch(
+      sequence.camera, [&](LiveRun& live) { feedAll(sequence, live); }, /*is_looked_at=*/false, mapping.map());
+  expectNone(run.trespasses);
+  EXPECT_GT(run.good, 40);
+  EXPECT_GT(run.lost, 0);
+  EXPECT_GT(run.found_again, 1);
 }
 
 // Real images, with losses and new maps among them.

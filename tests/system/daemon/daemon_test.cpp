@@ -99,5 +99,23 @@ TEST_F(DaemonTest, ASavedMapIsGoneOnWithAndOneThatCannotBeIsSetAside) {
   EXPECT_EQ(second->exitCode(), 0) << second->said();
 }
 
+// Localisation only: the file is read and never written, whatever the robot asks for.
+TEST_F(DaemonTest, AFrozenMapIsLocalisedInAndItsFileStays) {
+  const std::string map = folder_.path("robot.map");
+  const auto first = startOn(parlour_, {"--map-out", map});
+  ASSERT_EQ(first->exitCode(), 0) << first->said();
+  const std::string before = fileContent(map);
+  ASSERT_FALSE(before.empty());
+
+  const auto second = startOn(parlour_, {"--config", configure("map: {file: " + map + ", frozen: true}\n")});
+  ASSERT_TRUE(robot_->hearsState([](const state_t& state) { return state.state == state_t::RELOCALISED; }))
+      << second->said();
+  second->send(SIGHUP);
+  ASSERT_TRUE(second->says("the map is frozen (map.frozen): there is nothing new to save")) << second->said();
+  second->send(SIGTERM);
+  EXPECT_EQ(second->exitCode(), 0) << second->said();
+  EXPECT_TRUE(fileContent(map) == before);
+}
+
 }  // namespace
 }  // namespace edgeslam

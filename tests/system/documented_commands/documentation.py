@@ -31,8 +31,8 @@ class Command:
     @property
     def subcommand(self):
         words = [word for word in self.words[1:3] if re.fullmatch(r"[a-z-]+", word) and not word.startswith("-")]
-        if words[:1] == ["calibrate"]:
-            return words[:2] if words[1:] == ["board"] else words[:1]
+        if words in (["calibrate", "board"], ["map", "info"], ["map", "join"], ["map", "crop"]):
+            return words
         return words[:1]
 
     @property

@@ -24,8 +24,8 @@ INSTEAD = {
     "edgeslam run --config FILE [--source INPUT] [--record DIR] [--map-in FILE] [--map-out FILE]": Instead(
         SYNOPSIS, ["edgeslam run --config my_robot.yaml --source my_recording --record recorded --map-in saved.map "
                    "--map-out new.map"]),
-    "edgeslam view INPUT [--config FILE] [--port PORT]": Instead(
-        SYNOPSIS + "; it waits for a browser", ["edgeslam view my_recording --config my_robot.yaml --port 0"],
+    "edgeslam view INPUT [--config FILE] [--port PORT] [--map-in FILE]": Instead(
+        SYNOPSIS + "; it waits for a browser", ["edgeslam view my_recording --config my_robot.yaml --port 0 --map-in saved.map"],
         until="the page is at http://127.0.0.1:"),
     "edgeslam view FOLDER|VIDEO|RECORDING [--config FILE] [--port PORT]": Instead(
         SYNOPSIS + "; it waits for a browser", ["edgeslam view my_recording --config my_robot.yaml --port 0"],
@@ -44,8 +44,10 @@ INSTEAD = {
     "edgeslam evaluate ESTIMATE GROUNDTRUTH [--alignment similarity|rigid|none] [--tolerance S] [--delta S] [--json FILE]":
         Instead(SYNOPSIS, [f"edgeslam evaluate result/trajectory.txt groundtruth.txt --alignment {alignment} "
                            "--tolerance 0.02 --delta 1 --json error.json" for alignment in ("similarity", "rigid", "none")]),
-    "edgeslam benchmark DIR [--output DIR] [--jobs N] [--config FILE] [--only NAME,...] [--again]": Instead(
-        SYNOPSIS, ["edgeslam benchmark my_data --output all --jobs 1 --config my_robot.yaml --only first,second --again"]),
+    "edgeslam benchmark DIR [--output DIR] [--jobs N] [--config FILE] [--only NAME,...] [--again] [--slurm [OPTIONS]]": Instead(
+        SYNOPSIS + "; nothing is left for Slurm, which tests/system/slurm has",
+        ["edgeslam benchmark my_data --output all --jobs 1 --config my_robot.yaml --only first,second --again",
+         "edgeslam benchmark my_data --output all --config my_robot.yaml --slurm"]),
     "edgeslam report RUN RUN [RUN...] | DIR [--output FILE.html]": Instead(
         SYNOPSIS, ["edgeslam report before after", "edgeslam report before after result --output three.html",
                    "edgeslam report all --output all.html"]),
@@ -70,6 +72,16 @@ INSTEAD = {
     "edgeslam calibrate --readout RECORDING": Instead(
         PLACEHOLDERS + "; of this one's few frames none tells the readout", ["edgeslam calibrate --readout my_recording"],
         exit_code=1, says="does not tell the readout"),
+    "edgeslam map info FILE... [--picture PNG] [--json] [--force]": Instead(
+        SYNOPSIS, ["edgeslam map info saved.map robot.map", "edgeslam map info robot.map --json --picture robot.png --force"]),
+    "edgeslam map join FILE FILE... --output FILE [--config FILE] [--force]": Instead(
+        SYNOPSIS, ["edgeslam map join morning.map evening.map --output joined.map --config my_robot.yaml --force"]),
+    "edgeslam map crop FILE --output FILE [--keep-box X:X,Y:Y,Z:Z] [--remove-box X:X,Y:Y,Z:Z]... "
+    "[--remove-keyframes FIRST:LAST]... [--remove-map N]... [--map N] [--force]": Instead(
+        SYNOPSIS + "; this file has one map only, which is taken out",
+        ["edgeslam map crop robot.map --output cropped.map --keep-box -100:100,:,: --remove-box :-50,:,: "
+         "--remove-keyframes 0:1 --remove-keyframes 3 --remove-map 0 --map 0 --force"],
+        exit_code=2, says="nothing would be left of it"),
     "edgeslam mask RECORDING [--output mask.png] [--force]": Instead(
         SYNOPSIS + "; this one's few frames show too little", ["edgeslam mask my_recording --output mask.png --force"],
         exit_code=2, says="the camera hardly moves"),

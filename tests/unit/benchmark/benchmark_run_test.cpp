@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "benchmark/child_processes.h"
 #include "unit/files/temporary_folder.h"
 
 namespace edgeslam {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <thread>
 
+#include "edgeslam/slam.h"
 #include "unit/library/simulated_robot.h"
 
 namespace edgeslam {
@@ -46,6 +47,40 @@ TEST(LiveSlam, EveryFrameThatIsTakenGetsItsPoseInOrder) {
   EXPECT_EQ(slam.counters().passed_over, 0);
   EXPECT_EQ(slam.map().size(), slam.counters().points);
   EXPECT_NO_THROW(slam.saveMap(robot.folder.path("live.map")));
+}
+
+TEST(LiveSlam, AFrozenMapIsNeededAndStaysAsItIs) {
+  const SimulatedRobot& robot = simulatedRobot();
+  const std::string map_file = robot.folder.path("live_kept.map"), after = robot.folder.path("live_after.map");
+  {
+    Slam slam(robot.configuration);
+    for (int i = 0; i < robot.frame_count; ++i) slam.process(robot.image(i), robot.sequence.time(i));
+    slam.finish();
+    slam.saveMap(map_file);
+  }
+  const std::string frozen =
+      robot.folder.write("live_frozen.yaml", fileContent(robot.configuration) + "map: {frozen: true}\n");
+  EXPECT_THROW(LiveSlam(frozen, LiveSlam::PoseReceiver()), InputError);
+  EXPECT_THROW(LiveSlam(frozen, robot.configuration, LiveSlam::PoseReceiver()), InputError) << "that is no map";
+  std::atomic<int> good{0};
+  std::atomic<std::size_t> received{0};
+  LiveSlam slam(frozen, map_file, [&](const PosedFrame& pose) {
+    good += pose.isGood() ? 1 : 0;
+    ++received;
+  });
+  const std::size_t points = slam.counters().points;
+  EXPECT_GT(points, 0U);
+  for (int i = 0; i < robot.frame_count; ++i) {
+    slam.handOver(robot.image(i), robot.sequence.time(i));
+    for (int wait = 0; wait < 1000 && received.load() <= static_cast<std::size_t>(i); ++wait) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  slam.stop();
+  EXPECT_GT(good.load(), 0);
+  EXPECT_EQ(slam.counters().points, points);
+  slam.saveMap(after);
+  EXPECT_TRUE(fileContent(after) == fileContent(map_file));
 }
 
 TEST(LiveSlam, AFrameThatCannotBeIsRefused) {

@@ -103,6 +103,31 @@ TEST(Slam, ASavedMapIsGoneOnWith) {
   EXPECT_TRUE(again.takeEvents().empty());
 }
 
+// Localisation only.
+TEST(Slam, AFrozenMapIsNeededAndStaysAsItIs) {
+  const SimulatedRobot& robot = simulatedRobot();
+  const std::string map_file = robot.folder.path("kept.map"), after = robot.folder.path("after.map");
+  {
+    Slam slam(robot.configuration);
+    runOver(slam, robot.frame_count);
+    slam.saveMap(map_file);
+  }
+  const std::string frozen =
+      robot.folder.write("frozen.yaml", fileContent(robot.configuration) + "map: {frozen: true}\n");
+  Slam slam(frozen);
+  EXPECT_THROW(slam.process(robot.image(0), robot.sequence.time(0)), InputError) << "there is no map";
+  EXPECT_THROW(slam.skip(robot.sequence.time(0), "late"), InputError);
+  slam.goOnWith(map_file);
+  const std::size_t points = slam.map().size(), keyframes = slam.keyframes().size();
+  const std::vector<PosedFrame> frames = runOver(slam, robot.frame_count);
+  EXPECT_TRUE(frames.back().isGood()) << frames.back().reason;
+  EXPECT_EQ(slam.map().size(), points);
+  EXPECT_EQ(slam.keyframes().size(), keyframes);
+  slam.finish();
+  slam.saveMap(after);
+  EXPECT_TRUE(fileContent(after) == fileContent(map_file));
+}
+
 TEST(Slam, WhatCannotBeUsedIsToldWithItsFile) {
   const TemporaryFolder folder;
   const std::string empty = folder.write("empty.yaml", "");

@@ -70,5 +70,21 @@ TEST(ViewOfMap, TheCentreCanBeAnOldKeyframe) {
   EXPECT_FALSE(has(view, 38));
 }
 
+// What keyframes 5 and 6 saw is found again by 5 from where 5 is, and by 6 from where 6 is.
+TEST(ViewOfMap, SourcesCanBeTheNearestKeyframesRatherThanTheLatest) {
+  const Map map = rowOfKeyframes(40);
+  ViewOptions nearest;
+  nearest.nearest_sources = true;
+  EXPECT_EQ(findPoint(viewOfMap(map, 5, ViewOptions()), 5)->source, 6);
+  EXPECT_EQ(findPoint(viewOfMap(map, 5, nearest), 5)->source, 5);
+  EXPECT_EQ(findPoint(viewOfMap(map, 6, nearest), 5)->source, 6);
+  for (const ViewPoint& point : viewOfMap(map, 6, nearest).points) EXPECT_GE(point.source, 0);
+}
+
+TEST(ViewOfMap, SaysWhatItIsAround) {
+  EXPECT_EQ(viewOfMap(rowOfKeyframes(40), 6, ViewOptions()).centre, 6);
+  EXPECT_EQ(MapView().centre, -1);
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <set>
 
+#include "map/map_file.h"
 #include "simulator/simulator.h"
 
 namespace edgeslam {
@@ -125,6 +126,85 @@ TEST(LockstepRun, FramesAreDrawnAlsoBeforeTheCameraIsFoundInASavedMap) {
   cv::Mat channels[3];
   cv::split(result.drawings[0].image, channels);
   EXPECT_GT(cv::countNonZero(channels[0] != channels[1]), 500) << "its edges are coloured";
+}
+
+// Localisation only: poses as from mapping, and the map is the same bytes.
+TEST(LockstepRun, AFrozenMapIsLocalisedInAndStaysAsItIs) {
+  const Recording& made = recording();
+  LockstepRun first(made.sequence.camera, Settings(), frame_count, 0);
+  for (int i = 0; i < frame_count; ++i) {
+    first.process(i, made.sequence.time(i), made.images[static_cast<std::size_t>(i)]);
+  }
+  first.settle();
+  ASSERT_FALSE(first.map().keyframes.empty());
+  const std::string saved = encodeMap({made.sequence.camera, first.map()});
+
+  Settings settings;
+  settings.tracking.map_is_frozen = true;
+  std::vector<RunResult> results;
+  for (int again = 0; again < 2; ++again) {
+    LockstepRun run(made.sequence.camera, settings, frame_count, 0);
+    run.goOnWith(first.map());
+    for (int i = 0; i < frame_count; ++i) {
+      const std::int64_t index = frame_count - 1 - i;  // backwards: it is another run
+      run.process(i, made.sequence.time(i), made.images[static_cast<std::size_t>(index)]);
+    }
+    run.settle();
+    EXPECT_TRUE(encodeMap({made.sequence.camera, run.map()}) == saved);
+    results.push_back(run.finish());
+  }
+  int tracked = 0;
+  for (std::size_t i = 0; i < results[0].frames.size(); ++i) {
+    const FrameRecord &a = results[0].frames[i], &b = results[1].frames[i];
+    EXPECT_EQ(a.state, b.state);
+    expectSamePose(a.world_T_camera, b.world_T_camera);
+    tracked += isGoodPose(a.state) ? 1 : 0;
+    EXPECT_FALSE(a.is_keyframe);
+  }
+  EXPECT_GE(tracked, frame_count - 10);
+  EXPECT_TRUE(results[0].keyframes.empty()) << "none is of this run";
+}
+
+// Where nothing of it shows, poses are predicted and said to be so for a while, and never good.
+TEST(LockstepRun, WhereAFrozenMapDoesNotShowPosesArePredictedThenLost) {
+  const Recording& made = recording();
+  LockstepRun first(made.sequence.camera, Settings(), frame_count, 0);
+  for (int i = 0; i < frame_count; ++i) {
+    first.process(i, made.sequence.time(i), made.images[static_cast<std::size_t>(i)]);
+  }
+  first.settle();
+  Settings settings;
+  settings.tracking.map_is_frozen = true;
+  LockstepRun run(made.sequence.camera, settings, 200, 0);
+  run.goOnWith(first.map());
+  int at = 0;
+  const auto show = [&](const cv::Mat& grey) -> const FrameRecord& {
+    ++at;
+    return run.process(at, made.sequence.time(at), grey);
+  };
+  for (int i = 0; i < 30; ++i) show(made.images[30]);
+  ASSERT_EQ(run.latest().state, TrackingState::tracking) << run.latest().reason;
+  const cv::Mat covered(made.images[0].size(), CV_8U, cv::Scalar(20));
+  double last_sigma = 0;
+  int predicted = 0;
+  for (int i = 0; i < 60; ++i) {
+    const FrameRecord& frame = show(covered);
+    ASSERT_FALSE(isGoodPose(frame.state)) << i;
+    EXPECT_NE(frame.reason, "");
+    if (frame.state != TrackingState::predicted) continue;
+    ++predicted;
+    EXPECT_EQ(i + 1, predicted) << "first predicted, then lost";
+    EXPECT_TRUE(frame.has_pose);
+    EXPECT_GT(standardDeviation(frame)[0], last_sigma) << "it knows less and less";
+    last_sigma = standardDeviation(frame)[0];
+  }
+  EXPECT_GE(predicted, 20);
+  EXPECT_EQ(run.latest().state, TrackingState::lost);
+  EXPECT_FALSE(run.latest().has_pose);
+  bool found = false;
+  for (int i = 0; i < 30; ++i) found = isGoodPose(show(made.images[30]).state) || found;
+  EXPECT_TRUE(found) << "it is looked for in the map";
+  EXPECT_EQ(run.latest().world, 0) << "and no other map is begun";
 }
 
 TEST(LockstepRun, WhatARunLeavesFitsTogether) {

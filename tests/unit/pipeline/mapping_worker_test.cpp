@@ -367,5 +367,37 @@ TEST(MappingWorker, TheViewIsAroundTheFrameThatWasFound) {
   }
 }
 
+// The map of a frozen run, shown around the keyframe that tracking asks for.
+TEST(MappingWorker, AFrozenMapIsShownAroundAnyKeyframeAndStaysAsItIs) {
+  Settings settings;
+  settings.tracking.map_is_frozen = true;
+  settings.mapping.view.latest_keyframes = 1;
+  settings.mapping.view.near_keyframes = 0;
+  MappingWorker worker(placeCamera(), settings);
+  worker.goOnWith(place());
+  std::uint64_t version = worker.mapper().view().version;
+  for (const KeyframeId centre : {0, 4, 2}) {
+    MappingMessage message;
+    message.number = centre;
+    message.frame.kind = FrameKind::elsewhere;
+    message.frame.keyframe = centre;
+    const std::optional<MapUpdate> update = worker.handle(message);
+    ASSERT_TRUE(update);
+    EXPECT_EQ(update->view.centre, centre);
+    EXPECT_GT(update->view.version, version) << "or tracking would not take it";
+    version = update->view.version;
+    EXPECT_FALSE(update->found);
+    EXPECT_FALSE(worker.hasNewKeyframe());
+    EXPECT_FALSE(worker.snapshot()) << "places has nothing to do";
+    for (const ViewPoint& point : update->view.points) {
+      const MapPoint& mapped = place().points.at(point.id);
+      EXPECT_TRUE(mapped.host == centre || std::count(mapped.seen_in.begin(), mapped.seen_in.end(), centre) > 0);
+    }
+  }
+  EXPECT_TRUE(worker.takeReports().empty());
+  EXPECT_EQ(worker.mapper().map().keyframes.size(), place().keyframes.size());
+  EXPECT_EQ(worker.mapper().map().points.size(), place().points.size());
+}
+
 }  // namespace
 }  // namespace edgeslam::test

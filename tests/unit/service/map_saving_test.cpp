@@ -9,16 +9,23 @@ namespace {
 using MapSavingTest = MadeService;
 
 TEST_F(MapSavingTest, WithoutAFileItIsRefused) {
-  MapSaving saving(smallCamera(), "", answers_, work_, log_);
+  MapSaving saving(smallCamera(), "", false, answers_, work_, log_);
   saving.begin(run_);
   saving.ask(Command());
   EXPECT_EQ(said(), "edgeslam: no file is configured for the map (map.file)\n");
 }
 
+TEST_F(MapSavingTest, AFrozenMapHasNothingNewToSave) {
+  MapSaving saving(smallCamera(), "", true, answers_, work_, log_);
+  saving.begin(run_);
+  saving.ask(Command());
+  EXPECT_EQ(said(), "edgeslam: the map is frozen (map.frozen): there is nothing new to save\n");
+}
+
 TEST_F(MapSavingTest, AnEmptyMapDoesNotTakeThePlaceOfTheOneBefore) {
   const TemporaryFolder folder;
   const std::string file = folder.write("saved.map", "the one before");
-  MapSaving saving(smallCamera(), file, answers_, work_, log_);
+  MapSaving saving(smallCamera(), file, false, answers_, work_, log_);
   saving.begin(run_);
   saving.ask({});
   saving.mapCame(std::make_shared<const Map>());
@@ -29,7 +36,7 @@ TEST_F(MapSavingTest, AnEmptyMapDoesNotTakeThePlaceOfTheOneBefore) {
 
 TEST_F(MapSavingTest, AMapThatNobodyWantsSavedIsNotSaved) {
   const TemporaryFolder folder;
-  MapSaving saving(smallCamera(), folder.path("saved.map"), answers_, work_, log_);
+  MapSaving saving(smallCamera(), folder.path("saved.map"), false, answers_, work_, log_);
   saving.begin(run_);
   saving.mapCame(std::make_shared<const Map>());
   saving.end();
@@ -40,7 +47,7 @@ TEST_F(MapSavingTest, AMapThatNobodyWantsSavedIsNotSaved) {
 
 TEST_F(MapSavingTest, AWishThatTheRunDoesNotOutliveIsTold) {
   const TemporaryFolder folder;
-  MapSaving saving(smallCamera(), folder.path("saved.map"), answers_, work_, log_);
+  MapSaving saving(smallCamera(), folder.path("saved.map"), false, answers_, work_, log_);
   saving.begin(run_);
   saving.ask({});
   saving.end();
