@@ -18,7 +18,8 @@ SOURCES = {
     "src/tracking/frame_location.cpp": ["0."],
     "src/pipeline/tracking_worker.cpp": [],
     "src/pipeline/mapping_worker.cpp": [  # events
-        "map ", " begins beside those before: ", "recovered from three keyframes, ", " points", "relocalised at keyframe "],
+        "map ", " begins beside those before: ", "recovered from three keyframes, ", " points", "relocalised at keyframe ",
+        "the inertial unit tells metres and upright: a map unit is %.3f m +- %.1f %%"],
     "src/mapping/initialisation.cpp": [" from frame ", " to frame ", ", "],  # what the start was
     "src/mapping/initialisation.h": [],
     "src/mapping/initial_judgement.cpp": ["quality ", " edge pieces, parallax ", " deg, ", " points"],  # likewise
