@@ -91,6 +91,8 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--turn-angle", simulation.turn_deg, "How far it turns then [deg], -180 to 180")
       ->capture_default_str();
+  command->add_flag("--imu", simulation.inertia,
+                    "Inertial data beside the frames: imu.csv at 200 Hz with noise and biases, and imu.yaml");
   command->add_flag("--force", options->force, "Write to a folder that is not empty");
   command->callback([options, &exit_code] { exit_code = simulate(*options); });
 }

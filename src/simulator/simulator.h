@@ -43,6 +43,7 @@ struct SimulationOptions {
   std::vector<FrameRange> still;    // not moved at all
   std::vector<FrameRange> turned;   // turned on the spot, to the side and back ...
   double turn_deg = 40;             // ... so far
+  bool inertia = false;             // an inertial unit is on the camera
 };
 
 struct SimulatedFrame {

@@ -13,6 +13,7 @@
 #include "evaluation/trajectory.h"
 #include "files/format_text.h"
 #include "files/text_file.h"
+#include "simulator/inertial_simulation.h"
 
 namespace edgeslam {
 namespace {
@@ -76,6 +77,9 @@ void writeContents(const SimulatedSequence& sequence, const fs::path& folder,
                 formatTrajectory(trajectory));
   writeFile(folder / "camera.yaml", formatCalibration(sequence.camera, sequence.options));
   writeFile(folder / "surfaces.txt", formatSurfaces(sequence.scene.scene));
+  if (!sequence.options.inertia) return;
+  writeFile(folder / "imu.csv", formatInertialSamples(simulateInertia(sequence)));
+  writeFile(folder / "imu.yaml", formatInertialUnit(simulatedUnit()));
 }
 
 }  // namespace
@@ -116,9 +120,9 @@ void writeSequence(const SimulatedSequence& sequence, const std::string& folder_
   fs::create_directories(partial.path / "rgb", error);
   if (error) throw writeError(folder, error.value());
   writeContents(sequence, partial.path, progress);
-  for (const char* name : {"rgb", "rgb.txt", "groundtruth.txt", "camera.yaml", "surfaces.txt"}) {
+  for (const char* name : {"rgb", "rgb.txt", "groundtruth.txt", "camera.yaml", "surfaces.txt", "imu.csv", "imu.yaml"}) {
     fs::remove_all(folder / name, error);
-    if (!error) fs::rename(partial.path / name, folder / name, error);
+    if (!error && fs::exists(partial.path / name)) fs::rename(partial.path / name, folder / name, error);
     if (error) throw writeError(folder / name, error.value());
   }
   made.keep = true;

@@ -1,0 +1,84 @@
+// Inertial data beside the frames: metres, upright, and poses while a hand is on the lens.
+#include <gtest/gtest.h>
+
+#include "system/run_result.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr int covered_from = 200, covered_to = 214;
+
+class Inertia : public testing::Test {
+ protected:
+  ReplayedRun replayedWith(const std::string& name, const std::vector<std::string>& more) const {
+    ReplayedRun run = replayed(input_, folder_.path(name), more);
+    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.messages;
+    return run;
+  }
+  AbsoluteError errorOf(const std::string& name) const {
+    return absoluteError(readTrajectory(folder_.path(name + "/trajectory.txt")),
+                         readTrajectory(input_ + "/groundtruth.txt"), Alignment::similarity);
+  }
+
+  const std::string input_ = std::string(EDGESLAM_RUN_FOLDER) + "/inertial";
+  const TemporaryFolder folder_;
+};
+
+TEST_F(Inertia, GivesMetresAndUpright) {
+  const ReplayedRun run = replayedWith("with", {"--imu"});
+  EXPECT_NE(run.outcome.output.find("lengths are metres"), std::string::npos) << run.outcome.output;
+  const AbsoluteError error = errorOf("with");
+  EXPECT_LT(error.translation.rmse, 0.01);
+  EXPECT_NEAR(error.reference_T_estimate.scale, 1, 0.02);
+  const Eigen::Vector3d up = error.reference_T_estimate.rotation * Eigen::Vector3d::UnitZ();
+  EXPECT_LT(std::acos(up.z()), 0.01) << "the world's z is not up";
+}
+
+TEST_F(Inertia, GivesPosesWhileTheLensIsCovered) {
+  const ReplayedRun with = replayedWith("with", {"--imu"}), without = replayedWith("without", {});
+  EXPECT_EQ(with.countGood(covered_from, covered_to), covered_to - covered_from + 1);
+  EXPECT_LT(without.countGood(covered_from, covered_to), 3);
+  double largest_m = 0;
+  const AbsoluteError error = errorOf("with");
+  const Trajectory truth = readTrajectory(input_ + "/groundtruth.txt");
+  int compared = 0;
+  for (const StampedPose& pose : readTrajectory(folder_.path("with/trajectory.txt"))) {
+    for (int i = covered_from; i <= covered_to; ++i) {
+      const StampedPose& expected = truth[static_cast<std::size_t>(i)];
+      if (expected.time_ns != pose.time_ns) continue;
+      ++compared;
+      largest_m = std::max(
+          largest_m,
+          (error.reference_T_estimate * pose.world_T_camera.translation - expected.world_T_camera.translation).norm());
+    }
+  }
+  EXPECT_EQ(compared, covered_to - covered_from + 1);
+  EXPECT_LT(largest_m, 0.05);
+}
+
+TEST_F(Inertia, GivesTheSameBytesTwice) {
+  replayedWith("once", {"--imu"});
+  replayedWith("twice", {"--imu"});
+  for (const char* name : {"/trajectory.txt", "/trajectory_live.txt", "/map.ply"}) {
+    EXPECT_EQ(fileContent(folder_.path(std::string("once") + name)),
+              fileContent(folder_.path(std::string("twice") + name)));
+  }
+}
+
+TEST_F(Inertia, IsNotUsedUnlessAskedFor) {
+  const ReplayedRun run = replayedWith("without", {});
+  EXPECT_NE(run.outcome.messages.find("imu.csv is not used; --imu uses it"), std::string::npos) << run.outcome.messages;
+}
+
+TEST_F(Inertia, ThatIsNotThereOrCannotBeUsedIsSaid) {
+  const std::string plain = std::string(EDGESLAM_RUN_FOLDER) + "/small";
+  const Outcome missing = runProgram({"replay", plain, "--imu", "--output", folder_.path("no")});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_NE(missing.messages.find("imu.csv"), std::string::npos) << missing.messages;
+  const Outcome live = runProgram({"replay", input_, "--imu", "--realtime", "--output", folder_.path("no")});
+  EXPECT_EQ(live.exit_code, 2);
+  EXPECT_NE(live.messages.find("--realtime"), std::string::npos) << live.messages;
+}
+
+}  // namespace
+}  // namespace edgeslam
