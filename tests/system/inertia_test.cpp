@@ -71,8 +71,10 @@ TEST_F(Inertia, IsNotUsedUnlessAskedFor) {
 }
 
 TEST_F(Inertia, ThatIsNotThereOrCannotBeUsedIsSaid) {
-  const std::string plain = std::string(EDGESLAM_RUN_FOLDER) + "/small";
-  const Outcome missing = runProgram({"replay", plain, "--imu", "--output", folder_.path("no")});
+  for (const char* name : {"rgb", "rgb.txt", "camera.yaml"}) {
+    std::filesystem::create_symlink(input_ + "/" + name, folder_.path(name));
+  }
+  const Outcome missing = runProgram({"replay", folder_.path(""), "--imu", "--output", folder_.path("no")});
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_NE(missing.messages.find("imu.csv"), std::string::npos) << missing.messages;
   const Outcome live = runProgram({"replay", input_, "--imu", "--realtime", "--output", folder_.path("no")});
