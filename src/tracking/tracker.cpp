@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t scratch_size = std::size_t{8} << 20;  // a frame that needs more allocates it
 constexpr int least_pyramid_levels = 6;
 constexpr std::size_t most_found_again = 4096;
+constexpr std::size_t longest_reason = 256;
 constexpr int fewest_of_frozen_map = 40;  // points of it that must agree with a pose
 constexpr double few_left = 0.8;          // of the tracks there were when points of a frozen map were last looked for
 
@@ -91,6 +92,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
     frame->straight_edges.reserve(most_tracks_);
   }
   reserveForTracking(view_);
+  lost_reason_.reserve(longest_reason);
 }
 
 void Tracker::startLost(const MapView& view, PointId first_free_point) {
