@@ -48,7 +48,8 @@ const FrameResult& TrackingWorker::process(std::int64_t index, std::int64_t time
     result.reason.assign(start_reason_);
   }
   if (!mapping_busy && isToAskWhere(time_ns)) askWhere(time_ns, nextMessage(messages));
-  if (result.state == TrackingState::tracking) {
+  // A pose by inertia alone does not end the search for the frame.
+  if (result.state == TrackingState::tracking && tracker_.latestIsTracked()) {
     lost_frames_ = 0;
     asked_frame_ = -1;
     not_found_.clear();
