@@ -34,6 +34,7 @@ std::optional<OdometryMessages> BodyOdometry::next(const FrameResult& result, co
                           result.map_corrections,
                           robot.scale.metres_per_unit,
                           robot.scale.kind != ScaleKind::unknown,
+                          robot.down,
                           step->is_measured,
                           differ(step->taken_back, Pose())};
   if (before_ && before_->is_scale_known != now.is_scale_known) {
@@ -74,7 +75,8 @@ void BodyOdometry::correct(const FrameResult& result, const RobotSetup& robot, c
 std::int8_t BodyOdometry::reasonOf(const FrameResult& result, const Circumstances& now) const {
   if (!before_) return correction_t::START;
   if (now.world != before_->world) return correction_t::ANOTHER_WORLD;
-  if (now.metres_per_unit != before_->metres_per_unit || now.is_scale_known != before_->is_scale_known) {
+  if (now.metres_per_unit != before_->metres_per_unit || now.is_scale_known != before_->is_scale_known ||
+      now.down != before_->down) {
     return correction_t::SCALE;
   }
   if (result.state == TrackingState::recovered || result.state == TrackingState::relocalised) {

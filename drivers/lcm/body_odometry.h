@@ -27,6 +27,7 @@ class BodyOdometry {
     std::int64_t map_corrections = 0;
     double metres_per_unit = 1;
     bool is_scale_known = false;
+    std::optional<Eigen::Vector3d> down{};
     bool is_measured = false;
     bool is_taking_back = false;  // what was predicted wrong
   };

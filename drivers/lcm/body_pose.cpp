@@ -31,7 +31,28 @@ Pose cameraOnBody(const RobotSetup& robot) {
   return body_T_camera;
 }
 
-Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot) { return onBody(world_T_camera, robot); }
+Eigen::Quaterniond worldTurnedUp(const RobotSetup& robot) {
+  if (!robot.down) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(-*robot.down, Eigen::Vector3d::UnitZ());
+}
+
+Eigen::Quaterniond localTurnedUp(const RobotSetup& robot) {
+  if (!robot.down) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(-(robot.body_T_camera.rotation * *robot.down), Eigen::Vector3d::UnitZ());
+}
+
+Pose cameraPose(const Pose& world_T_camera, const RobotSetup& robot) {
+  return Pose{worldTurnedUp(robot), Eigen::Vector3d::Zero()} * scaled(world_T_camera, robot.scale);
+}
+
+Eigen::Vector3f pointInWorld(const Eigen::Vector3f& point, const RobotSetup& robot) {
+  const Eigen::Vector3f in_metres = static_cast<float>(robot.scale.metres_per_unit) * point;
+  return robot.down ? Eigen::Vector3f(worldTurnedUp(robot).cast<float>() * in_metres) : in_metres;
+}
+
+Pose bodyPose(const Pose& world_T_camera, const RobotSetup& robot) {
+  return Pose{localTurnedUp(robot), Eigen::Vector3d::Zero()} * onBody(world_T_camera, robot);
+}
 
 Matrix6d bodyCovariance(const Matrix6d& covariance_camera, const RobotSetup& robot) {
   if (!isKnown(covariance_camera)) return unknown_variance * Matrix6d::Identity();

@@ -14,6 +14,8 @@ namespace edgeslam {
 struct RobotSetup {
   Pose body_T_camera;  // translation [m]
   ScaleState scale;
+  // Where inertia tells it, unit, in the world as the map has it; none: `world` and `local` stay as the map began.
+  std::optional<Eigen::Vector3d> down{};
 };
 
 struct BodyMotion {
@@ -28,6 +30,15 @@ constexpr double longest_motion_s = 0.5;  // between two measured poses that giv
 
 // The camera's place on the robot in the unit of the messages; none while the scale is unknown.
 Pose cameraOnBody(const RobotSetup& robot);
+
+// What makes z point up, about the origin, by the least turn: of `world` and of `local`; the identity where it is not
+// known where down is.
+Eigen::Quaterniond worldTurnedUp(const RobotSetup& robot);
+Eigen::Quaterniond localTurnedUp(const RobotSetup& robot);
+
+// world_T_camera in the unit of the messages, z up where that is known; and so a point of the map.
+Pose cameraPose(const Pose& world_T_camera, const RobotSetup& robot);
+Eigen::Vector3f pointInWorld(const Eigen::Vector3f& point, const RobotSetup& robot);
 
 // local_T_body. While the scale is unknown, the camera's place on the robot (metres) cannot be told in map units: the
 // body then has its own orientation and the camera's position.

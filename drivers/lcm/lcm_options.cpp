@@ -91,6 +91,7 @@ void checkChannels(const LcmOptions& options) {
                                     options.map_channel,        options.map_lines_channel, options.command_channel,
                                     options.answer_channel};
   if (!options.wheels_channel.empty()) channels.push_back(options.wheels_channel);
+  if (!options.imu_channel.empty()) channels.push_back(options.imu_channel);
   for (const std::string& name : channels) {
     const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
       return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';

@@ -27,6 +27,8 @@ struct LcmOptions {
   std::string answer_channel = "SLAM_ANSWER";
   // of the robot's wheel odometry (pose_t), which is listened to; empty: none
   std::string wheels_channel;
+  // of the robot's inertial unit (imu_t), likewise
+  std::string imu_channel;
 };
 
 struct MulticastGroup {

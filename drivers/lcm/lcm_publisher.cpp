@@ -27,6 +27,7 @@ LcmPublisher::LcmPublisher(const LcmOptions& options, const Pose& body_T_camera)
     if (!options_.wheels_channel.empty()) {
       wheels_ = std::make_unique<OdometryReceiver>(options_.url, options_.wheels_channel);
     }
+    if (!options_.imu_channel.empty()) imu_ = std::make_unique<ImuReceiver>(options_.url, options_.imu_channel);
   }
 }
 
@@ -95,11 +96,10 @@ LcmCounts LcmPublisher::counts() const {
 void LcmPublisher::sendMapParts() {
   for (int i = 0; i < map_parts_at_once && next_part_ < parts_; ++i, ++next_part_) {
     if (next_part_ < line_parts_) {
-      sender_.send(options_.map_lines_channel,
-                   linePart(map_.lines, next_part_, map_version_, map_utime_, robot_.scale));
+      sender_.send(options_.map_lines_channel, linePart(map_.lines, next_part_, map_version_, map_utime_, robot_));
     } else {
       sender_.send(options_.map_channel,
-                   pointPart(map_.points, next_part_ - line_parts_, map_version_, map_utime_, robot_.scale));
+                   pointPart(map_.points, next_part_ - line_parts_, map_version_, map_utime_, robot_));
     }
   }
 }
@@ -109,6 +109,7 @@ void LcmPublisher::rejoinAfterComeback() {
   comebacks_ = sender_.comebacks();
   if (receiver_) receiver_->listener().joinAnew();
   if (wheels_) wheels_->listener().joinAnew();
+  if (imu_) imu_->listener().joinAnew();
 }
 
 }  // namespace edgeslam

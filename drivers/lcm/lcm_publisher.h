@@ -9,6 +9,7 @@
 
 #include "drivers/lcm/body_odometry.h"
 #include "drivers/lcm/command_receiver.h"
+#include "drivers/lcm/imu_receiver.h"
 #include "drivers/lcm/lcm_options.h"
 #include "drivers/lcm/lcm_sender.h"
 #include "drivers/lcm/map_messages.h"
@@ -33,6 +34,8 @@ class LcmPublisher {
 
   // From the next frame on.
   void setScale(const ScaleState& scale) { robot_.scale = scale; }
+  // Where inertia tells it (RobotSetup::down).
+  void setDown(const std::optional<Eigen::Vector3d>& down) { robot_.down = down; }
   const ScaleState& scale() const { return robot_.scale; }
   const RobotSetup& robot() const { return robot_; }
 
@@ -57,6 +60,9 @@ class LcmPublisher {
   // Messages on its channel that were no pose of a body, or too many at once.
   std::int64_t odometryIgnored() const { return wheels_ ? wheels_->ignored() : 0; }
 
+  // The robot's inertial unit, where LcmOptions name a channel for it, else null; for one other thread.
+  ImuReceiver* imu() { return imu_.get(); }
+
   // As of now; messages that wait to be sent are not counted yet.
   LcmCounts counts() const;
   // Why messages do not go out at present, in one line with what to do; empty where they do.
@@ -73,6 +79,7 @@ class LcmPublisher {
   LcmSender sender_;
   std::unique_ptr<CommandReceiver> receiver_;  // null where the URL cannot receive
   std::unique_ptr<OdometryReceiver> wheels_;   // likewise, and where no channel is named
+  std::unique_ptr<ImuReceiver> imu_;           // likewise
   std::optional<MeasuredPose> before_;
   BodyOdometry body_odometry_;
   FrameStatistics statistics_;

@@ -28,19 +28,19 @@ ItemRange itemsOfPart(int part, std::size_t items, std::size_t in_a_part) {
 
 // With the fields that parts of points and of lines share.
 template <class Message>
-Message emptyPart(int part, int parts, std::int64_t version, std::int64_t utime, const ScaleState& scale) {
+Message emptyPart(int part, int parts, std::int64_t version, std::int64_t utime, const RobotSetup& robot) {
   Message message{};
   message.utime = utime;
   message.version = version;
   message.part = part;
   message.parts = parts;
-  message.scale_state = scaleNumber(scale.kind);
+  message.scale_state = scaleNumber(robot.scale.kind);
   return message;
 }
 
-void writeScaled(const Eigen::Vector3f& position, const ScaleState& scale, float (&to)[3]) {
-  const Eigen::Vector3f scaled = static_cast<float>(scale.metres_per_unit) * position;
-  std::copy_n(scaled.data(), 3, to);
+void writePlace(const Eigen::Vector3f& point, const RobotSetup& robot, float (&to)[3]) {
+  const Eigen::Vector3f place = pointInWorld(point, robot);
+  std::copy_n(place.data(), 3, to);
 }
 
 }  // namespace
@@ -57,31 +57,33 @@ int numberOfPointParts(std::size_t points) { return numberOfParts(points, map_pa
 int numberOfLineParts(std::size_t lines) { return numberOfParts(lines, map_lines_t::MOST_LINES); }
 
 map_part_t pointPart(const std::vector<PublishedPoint>& points, int part, std::int64_t version, std::int64_t utime,
-                     const ScaleState& scale) {
-  auto message = emptyPart<map_part_t>(part, numberOfPointParts(points.size()), version, utime, scale);
+                     const RobotSetup& robot) {
+  auto message = emptyPart<map_part_t>(part, numberOfPointParts(points.size()), version, utime, robot);
   const auto [first, last] = itemsOfPart(part, points.size(), map_part_t::MOST_POINTS);
   message.points_in_map = static_cast<std::int32_t>(points.size());
   message.points = static_cast<std::int32_t>(last - first);
+  const Eigen::Quaternionf turn = worldTurnedUp(robot).cast<float>();
   for (std::size_t i = first; i < last; ++i) {
     const std::size_t at = i - first;
     message.id[at] = points[i].id;
-    writeScaled(points[i].position, scale, message.position[at]);
-    std::copy_n(points[i].direction.data(), 3, message.direction[at]);
+    writePlace(points[i].position, robot, message.position[at]);
+    const Eigen::Vector3f direction = turn * points[i].direction;
+    std::copy_n(direction.data(), 3, message.direction[at]);
   }
   return message;
 }
 
 map_lines_t linePart(const std::vector<PublishedLine>& lines, int part, std::int64_t version, std::int64_t utime,
-                     const ScaleState& scale) {
-  auto message = emptyPart<map_lines_t>(part, numberOfLineParts(lines.size()), version, utime, scale);
+                     const RobotSetup& robot) {
+  auto message = emptyPart<map_lines_t>(part, numberOfLineParts(lines.size()), version, utime, robot);
   const auto [first, last] = itemsOfPart(part, lines.size(), map_lines_t::MOST_LINES);
   message.lines_in_map = static_cast<std::int32_t>(lines.size());
   message.lines = static_cast<std::int32_t>(last - first);
   for (std::size_t i = first; i < last; ++i) {
     const std::size_t at = i - first;
     message.id[at] = lines[i].id;
-    writeScaled(lines[i].from, scale, message.first_end[at]);
-    writeScaled(lines[i].to, scale, message.second_end[at]);
+    writePlace(lines[i].from, robot, message.first_end[at]);
+    writePlace(lines[i].to, robot, message.second_end[at]);
   }
   return message;
 }

@@ -35,8 +35,8 @@ int numberOfLineParts(std::size_t lines);
 
 // Part `part`, counted from 0, of the points' numberOfPointParts() or the lines' numberOfLineParts().
 map_part_t pointPart(const std::vector<PublishedPoint>& points, int part, std::int64_t version, std::int64_t utime,
-                     const ScaleState& scale);
+                     const RobotSetup& robot);
 map_lines_t linePart(const std::vector<PublishedLine>& lines, int part, std::int64_t version, std::int64_t utime,
-                     const ScaleState& scale);
+                     const RobotSetup& robot);
 
 }  // namespace edgeslam

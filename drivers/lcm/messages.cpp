@@ -38,8 +38,9 @@ state_t stateMessage(const FrameResult& result, const RobotSetup& robot, const B
   const Pose local_T_body = bodyPose(world_T_camera, robot);
   put(local_T_body.translation, state.position);
   put(local_T_body.rotation, state.orientation);
-  put(robot.scale.metres_per_unit * world_T_camera.translation, state.camera_position);
-  put(world_T_camera.rotation, state.camera_orientation);
+  const Pose of_camera = cameraPose(world_T_camera, robot);
+  put(of_camera.translation, state.camera_position);
+  put(of_camera.rotation, state.camera_orientation);
   put(bodyCovariance(state.has_pose ? result.world_covariance : Matrix6d::Zero(), robot), state.covariance);
 
   state.has_twist = twist != nullptr;
@@ -128,6 +129,8 @@ std::int8_t scaleNumber(ScaleKind kind) {
       return state_t::SCALE_FROM_CAMERA_HEIGHT;
     case ScaleKind::odometry:
       return state_t::SCALE_FROM_ODOMETRY;
+    case ScaleKind::inertia:
+      return state_t::SCALE_FROM_INERTIA;
     case ScaleKind::unknown:
       break;
   }

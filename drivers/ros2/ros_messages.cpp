@@ -76,11 +76,11 @@ RosFrame rosFrame(const SentFrame& sent, const Ros2Options& options, std::int64_
 
 RosCloud rosCloud(const std::vector<PublishedPoint>& points, int world, const RobotSetup& robot,
                   const Ros2Options& options, std::int64_t stamp_ns) {
-  // local_T_world: `world` is the camera's frame where `local` is the body's.
-  const Pose body_T_camera = cameraOnBody(robot);
+  // `world` is the camera's frame where `local` is the body's.
+  const Pose local_T_world = Pose{localTurnedUp(robot), Eigen::Vector3d::Zero()} * cameraOnBody(robot);
   const auto metres_per_unit = static_cast<float>(robot.scale.metres_per_unit);
-  const Eigen::Matrix3f turn = body_T_camera.rotation.toRotationMatrix().cast<float>();
-  const Eigen::Vector3f place = body_T_camera.translation.cast<float>();
+  const Eigen::Matrix3f turn = local_T_world.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f place = local_T_world.translation.cast<float>();
   RosCloud cloud{stamp_ns, mapFrame(options.map_frame, world), {}};
   cloud.points.reserve(points.size());
   for (const PublishedPoint& point : points) {

@@ -79,6 +79,8 @@ const char* scaleName(ScaleKind kind) {
       return "camera height";
     case ScaleKind::odometry:
       return "odometry";
+    case ScaleKind::inertia:
+      return "inertia";
   }
   return "unknown";
 }

@@ -48,6 +48,9 @@ class EDGESLAM_PUBLIC LiveSlam {
   // From one thread. Copies the image and never waits: where tracking has not taken the frame before, this one takes
   // its place. Throws InputError where its size is not the calibration's or its time stamp not after the last one's.
   void handOver(const GreyImage& image, std::int64_t time_ns);
+  // What the inertial unit measured, in order, as it comes; from one thread, which may be another. Never waits. Of use
+  // where the configuration has `imu.enabled`. Throws InputError where no unit can have measured it.
+  void add(const InertialMeasurement& measurement);
   LiveCounters counters() const;
 
   // No frame follows. Waits until mapping has come to its end.

@@ -34,6 +34,11 @@ class EDGESLAM_PUBLIC Slam {
   // configuration, which needs a map, it is only localised in, and stays as it is. Throws InputError.
   void goOnWith(const std::string& map_file);
 
+  // What the inertial unit measured, in order: before each frame what was measured until then, and best the first
+  // after it. Of use where the configuration has `imu.enabled`. One that is not after the last is left out. Throws
+  // InputError where no unit can have measured it.
+  void add(const InertialMeasurement& measurement);
+
   // The next frame. Throws InputError where its size is not the calibration's or its time stamp not after the last
   // one's, or a frozen map was not given; nothing is changed then. `index` counts frames.
   PosedFrame process(const GreyImage& image, std::int64_t time_ns);

@@ -1,7 +1,8 @@
 // Frames, poses and map points, as they go into the library and come out of it.
 //
 // Frames of reference: the camera's is x right, y down, z forward; the world is the camera's at the map's first
-// keyframe. Lengths are in map units: one camera cannot know the scale. Rotations are unit quaternions (w, x, y, z).
+// keyframe. Lengths are in map units: one camera cannot know the scale. With an inertial unit PosedFrame tells it.
+// Rotations are unit quaternions (w, x, y, z).
 //
 // Worlds: where the camera is lost in a place not seen before, a new map is begun beside the old one. It is a world of
 // its own, with its own frame of reference and its own unit, until both are found to be of the same place: the later
@@ -23,6 +24,13 @@ struct GreyImage {
   int width = 0;   // [px], the calibration's
   int height = 0;  // [px]
   std::ptrdiff_t bytes_per_row = 0;
+};
+
+// What an inertial unit measured, which is fixed to the camera; the configuration's section `imu` says how.
+struct InertialMeasurement {
+  std::int64_t time_ns = 0;                       // of the unit's clock: imu.time_offset_s after the frames'
+  std::array<double, 3> rotation_rate{0, 0, 0};   // the unit's axes [rad/s]
+  std::array<double, 3> specific_force{0, 0, 0};  // the unit's axes [m/s^2]: at rest 9.81 upwards
 };
 
 // Of the world T camera: takes coordinates in the camera frame to the world.
@@ -57,9 +65,15 @@ struct PosedFrame {
   CameraPose odometry;                           // map units
   std::array<double, 36> odometry_covariance{};  // as `covariance`, since the first pose
   int odometry_resets = 0;
-  int tracked_points = 0;  // points followed in the image
-  int mapped_points = 0;   // of these with depth, and used for the pose
-  double latency_ms = -1;  // from handing the frame over to its pose; negative: not known
+  // Where an inertial unit tells it: what a map unit is, and where down is, in this world. Both become known some
+  // seconds after a map's start, and better from then on.
+  bool is_metric = false;
+  double metres_per_unit = 1;
+  double scale_sigma = 0;               // standard deviation of it, share of it
+  std::array<double, 3> down{0, 0, 0};  // world, unit
+  int tracked_points = 0;               // points followed in the image
+  int mapped_points = 0;                // of these with depth, and used for the pose
+  double latency_ms = -1;               // from handing the frame over to its pose; negative: not known
 
   // The pose was measured, not guessed.
   bool isGood() const {

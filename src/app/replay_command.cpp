@@ -20,6 +20,7 @@
 #include "configuration/input_configuration.h"
 #include "files/format_text.h"
 #include "frames/frame_problem.h"
+#include "frames/inertial_feed.h"
 #include "map/saved_map.h"
 #include "pipeline/lockstep_run.h"
 #include "recording/open_frame_source.h"
@@ -83,28 +84,9 @@ void requireReadoutWithin(const Camera& camera, double frame_interval_s) {
                 camera.readout_s, frame_interval_s));
 }
 
-// Gives a run the samples until a frame's time, and the first after it.
-class InertialFeed {
- public:
-  InertialFeed(const std::optional<InertialRecording>& recording, LockstepRun& run)
-      : recording_(recording), run_(run) {}
-
-  void giveUntil(std::int64_t frame_ns) {
-    if (!recording_) return;
-    const std::vector<InertialSample>& samples = recording_->samples;
-    const std::int64_t until_ns = frame_ns + recording_->unit.offset_ns;
-    while (next_ < samples.size() && (next_ == 0 || samples[next_ - 1].time_ns < until_ns)) run_.add(samples[next_++]);
-  }
-
- private:
-  const std::optional<InertialRecording>& recording_;
-  LockstepRun& run_;
-  std::size_t next_ = 0;
-};
-
-void processAll(FrameSource& source, const Camera& camera, const std::optional<InertialRecording>& inertia,
-                LockstepRun& run) {
-  InertialFeed feed(inertia, run);
+void processAll(FrameSource& source, const Camera& camera, const std::vector<InertialSample>& samples,
+                const Settings& settings, LockstepRun& run) {
+  InertialFeed inertia(samples, settings.tracking.inertia ? settings.tracking.inertia->offset_ns : 0);
   ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
@@ -112,7 +94,7 @@ void processAll(FrameSource& source, const Camera& camera, const std::optional<I
     if (count == 2) requireReadoutWithin(camera, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
     const std::string problem = frameProblem(*frame, camera);
     if (!problem.empty()) tellSkipped(frame->index, problem, progress);
-    feed.giveUntil(frame->time_ns);
+    inertia.giveUntil(frame->time_ns, [&](const InertialSample& sample) { run.add(sample); });
     const FrameRecord& record = problem.empty() ? run.process(frame->index, frame->time_ns, frame->grey)
                                                 : run.skip(frame->index, frame->time_ns, problem);
     progress.show(record, count, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
@@ -140,7 +122,7 @@ std::string mapToGoOnWith(const ReplayArguments& arguments, const FrameSource& s
 }
 
 Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Settings& settings,
-                          const std::optional<InertialRecording>& inertia, const ReplayArguments& arguments) {
+                          const std::vector<InertialSample>& inertia, const ReplayArguments& arguments) {
   LockstepRun run(camera, settings, source.size(), arguments.drawings);
   if (const Recording* recording = source.recording()) {
     const Decisions& decisions = recording->decisions;
@@ -149,7 +131,7 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
   }
   if (const std::string map = mapToGoOnWith(arguments, source, settings); !map.empty())
     run.goOnWith(loadMap(map, camera));
-  processAll(source, camera, inertia, run);
+  processAll(source, camera, inertia, settings, run);
   Replayed replayed;
   replayed.result = run.finish();
   replayed.map = run.map();
@@ -157,8 +139,9 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
 }
 
 Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Configuration& configuration,
-                          const ReplayArguments& arguments) {
+                          std::vector<InertialSample> inertia, const ReplayArguments& arguments) {
   LiveReplay replay;
+  replay.inertia = std::move(inertia);
   const std::string map = mapToGoOnWith(arguments, source, configuration.settings);
   if (!map.empty()) replay.map_in = loadMap(map, camera);
   replay.record_folder = arguments.record;
@@ -206,6 +189,37 @@ void requireWritable(const std::string& folder) {
   }
 }
 
+// What was measured beside the frames, with the settings to use it; empty where it is not to be used. A recording's
+// inertia is among its decisions.
+std::vector<InertialSample> inertiaFor(const FrameSource& source, const ReplayArguments& arguments,
+                                       Configuration& configuration) {
+  InertiaConfiguration& configured = configuration.inertia;
+  configured.is_used |= arguments.imu;
+  const InertialFiles files = source.inertialFiles();
+  const Recording* recording = source.recording();
+  if (!configured.is_used) {
+    if (!files.samples.empty()) std::cerr << "edgeslam: " << files.samples << " is not used; --imu uses it\n";
+    return {};
+  }
+  if (recording && recording->decisions.inertia.empty()) {
+    throw InputError(recording->folder + ": the run was recorded without inertial data");
+  }
+  std::vector<InertialSample> samples;
+  if (recording) {
+    for (const InertiaGiven& given : recording->decisions.inertia) samples.push_back(given.sample);
+  } else if (configured.has_unit) {
+    samples = readInertialSamples(files);
+  } else {
+    InertialRecording beside = readInertialRecording(files);
+    configured.unit = beside.unit;
+    configured.has_unit = true;
+    samples = std::move(beside.samples);
+  }
+  configuration.settings = settingsWithInertia(configuration);
+  const bool is_repeated = recording && !arguments.realtime && recording->decisions.not_recorded == 0;
+  return is_repeated ? std::vector<InertialSample>() : samples;
+}
+
 int runReplay(const ReplayArguments& arguments) {
   if (arguments.pace != 1 && !arguments.realtime) {
     throw InputError("--pace: only what runs live has a pace, add --realtime");
@@ -216,18 +230,10 @@ int runReplay(const ReplayArguments& arguments) {
   if (arguments.lcm && !arguments.realtime) {
     throw InputError("--lcm: only what runs live is published, add --realtime");
   }
-  if (arguments.imu && arguments.realtime)
-    throw InputError("--imu: not with --realtime, which runs on the camera alone");
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
   Configuration configuration = configurationFor(*source, arguments.configuration);
   const Camera camera = cameraFor(*source, configuration, arguments.input);
-  std::optional<InertialRecording> inertia;
-  if (arguments.imu) {
-    inertia = readInertialRecording(source->inertialFiles());
-    useInertia(inertia->unit, configuration.settings);
-  } else if (!source->inertialFiles().samples.empty()) {
-    std::cerr << "edgeslam: " << source->inertialFiles().samples << " is not used; --imu uses it\n";
-  }
+  const std::vector<InertialSample> inertia = inertiaFor(*source, arguments, configuration);
   std::optional<Trajectory> ground_truth;
   if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
 
@@ -235,7 +241,7 @@ int runReplay(const ReplayArguments& arguments) {
   if (!arguments.map_out.empty()) requireMapCanBeSaved(arguments.map_out);
   const auto start = std::chrono::steady_clock::now();
   Replayed replayed = arguments.realtime
-                          ? replayInRealTime(*source, camera, configuration, arguments)
+                          ? replayInRealTime(*source, camera, configuration, inertia, arguments)
                           : replayInLockstep(*source, camera, configuration.settings, inertia, arguments);
   RunResult& result = replayed.result;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

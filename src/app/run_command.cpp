@@ -56,6 +56,7 @@ DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
   if (!arguments.configuration.empty()) setup.configuration = readConfiguration(arguments.configuration);
   const ServiceOptions& service = setup.configuration.service;
   setup.camera = cameraOf(arguments, setup.configuration);
+  setup.configuration.settings = settingsWithInertia(setup.configuration);
   setup.capture = setup.configuration.capture;
   if (!arguments.source.empty()) {
     setup.capture = CameraOptions();

@@ -12,6 +12,7 @@
 #include "configuration/configuration_capture.h"
 #include "configuration/configuration_checks.h"
 #include "configuration/configuration_document.h"
+#include "configuration/configuration_imu.h"
 #include "configuration/configuration_keys.h"
 #include "files/key_suggestion.h"
 #include "frames/mask_file.h"
@@ -101,6 +102,7 @@ class Reader {
     });
     const TellProblem tell_at = [this](int at, const std::string& problem) { tell(at, problem); };
     if (section == "camera") readCameraSection(node, configuration_, tell_at);
+    if (section == "imu") readImuSection(node, configuration_, tell_at);
     if (section == "capture") readCaptureSection(node, configuration_.capture, tell_at);
     const std::string wrong = sectionProblem(section, configuration_);
     if (!wrong.empty()) tell(node.Mark().line, wrong);
@@ -201,6 +203,17 @@ Camera asConfigured(Camera camera, const Configuration& configuration) {
   camera.readout_s = configuration.readout_s.value_or(camera.readout_s);
   camera.mask = configuration.mask;
   return camera;
+}
+
+Settings settingsWithInertia(const Configuration& configuration) {
+  Settings settings = configuration.settings;
+  if (!configuration.inertia.is_used) return settings;
+  if (!configuration.inertia.has_unit) {
+    throw InputError(configuration.source +
+                     ": imu.enabled: it is not known where the unit sits; give imu.imu_T_camera or imu.calibration");
+  }
+  useInertia(configuration.inertia.unit, settings);
+  return settings;
 }
 
 Configuration readConfiguration(const std::string& path, std::vector<std::string>& problems) {

@@ -13,6 +13,7 @@
 #include "edgeslam/input_error.h"
 #include "geometry/camera_mask.h"
 #include "geometry/pose.h"
+#include "inertia/inertial_unit.h"
 #include "pipeline/settings.h"
 #include "scale/scale_options.h"
 
@@ -31,6 +32,15 @@ struct ServiceOptions {
   Ros2Options ros2;
 };
 
+// The inertial unit that is fixed to the camera.
+struct InertiaConfiguration {
+  bool is_used = false;
+  std::string channel = "IMU";  // of LCM, for live runs
+  bool has_unit = false;        // the file says where it sits; otherwise `unit` has only its noise
+  InertialUnit unit;
+  double time_offset_s = 0;  // as unit.offset_ns
+};
+
 struct Configuration {
   Settings settings;
   std::optional<Camera> camera;  // where the file gives one
@@ -41,6 +51,7 @@ struct Configuration {
   std::string mask_path;                   // absolute; of its image
   Pose body_T_camera;     // of the camera on the robot, translation [m]; the identity unless the file gives it
   CameraOptions capture;  // the live camera
+  InertiaConfiguration inertia;
   ServiceOptions service;
   std::string source;  // path of the file; empty for the defaults
 };
@@ -51,6 +62,9 @@ std::string maskProblem(const Camera& camera, const Configuration& configuration
 // The camera with what the configuration gives of it by itself: its readout and its mask. Throws InputError where there
 // is a maskProblem().
 Camera asConfigured(Camera camera, const Configuration& configuration);
+
+// The settings with the inertial unit, where it is to be used. Throws InputError where it is not known where it sits.
+Settings settingsWithInertia(const Configuration& configuration);
 
 // An empty file gives the defaults; an included file is read first. Throws InputError `FILE:LINE: KEY: ...` at the
 // first problem.

@@ -1,20 +1,16 @@
 #include "configuration/configuration_camera.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 
+#include "configuration/configuration_pose.h"
 #include "frames/calibration_file.h"
 #include "frames/mask_file.h"
 
 namespace edgeslam {
 namespace {
-
-constexpr double rotation_tolerance = 1e-3;  // of a matrix's or a quaternion's departure from a rotation
-constexpr double rounding = 1e-12;           // a quaternion so near to length 1 is kept to the last bit
 
 const char* modelName(CameraModel model) {
   return model == CameraModel::kannala_brandt ? "kannala_brandt" : "pinhole_radial_tangential";
@@ -131,59 +127,6 @@ void readReadout(const YAML::Node& readout, Configuration& configuration, const 
   configuration.readout_s = readout_s;
 }
 
-// The numbers of a list, nested lists flattened by one level; false where anything else is in it.
-bool readNumbers(const YAML::Node& node, std::vector<double>& numbers) {
-  if (!node.IsSequence() || node.size() > 16) return false;
-  for (const YAML::Node& entry : node) {
-    if (entry.IsSequence() && entry.size() == 4) {
-      for (const YAML::Node& inner : entry) {
-        numbers.push_back(0);
-        if (!inner.IsScalar() || !parseNumber(inner.Scalar(), numbers.back())) return false;
-      }
-    } else {
-      numbers.push_back(0);
-      if (!entry.IsScalar() || !parseNumber(entry.Scalar(), numbers.back())) return false;
-    }
-  }
-  return true;
-}
-
-std::string poseFromMatrix(const YAML::Node& node, Pose& pose) {
-  std::vector<double> n;
-  if (!readNumbers(node, n) || n.size() != 16) return "16 finite numbers are expected";
-  Eigen::Matrix3d rotation;
-  rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
-  const Eigen::Matrix3d rest = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
-  if (!(rest.cwiseAbs().maxCoeff() < rotation_tolerance) || rotation.determinant() < 0) {
-    return "its upper left 3x3 part is not a rotation";
-  }
-  if (n[12] != 0 || n[13] != 0 || n[14] != 0 || n[15] != 1) return "its last row is not 0 0 0 1";
-  pose = {Eigen::Quaterniond(rotation).normalized(), {n[3], n[7], n[11]}};
-  return "";
-}
-
-std::string poseFromMapping(const YAML::Node& node, Pose& pose) {
-  std::vector<double> t, q;
-  for (const auto& entry : node) {
-    const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    if (name == "translation") {
-      if (!t.empty() || !readNumbers(entry.second, t) || t.size() != 3)
-        return "translation must be three finite numbers [m]";
-    } else if (name == "quaternion") {
-      if (!q.empty() || !readNumbers(entry.second, q) || q.size() != 4)
-        return "quaternion must be four finite numbers w x y z";
-    } else {
-      return "only translation and quaternion are expected here";
-    }
-  }
-  if (t.empty() || q.empty()) return "both translation and quaternion are needed";
-  const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
-  if (!(std::abs(rotation.norm() - 1) < rotation_tolerance)) return "the quaternion's length is not 1";
-  const bool is_unit = std::abs(rotation.norm() - 1) < rounding;
-  pose = {is_unit ? rotation : rotation.normalized(), {t[0], t[1], t[2]}};
-  return "";
-}
-
 }  // namespace
 
 bool isCalibration(const YAML::Node& document) {
@@ -245,17 +188,12 @@ void readCameraSection(const YAML::Node& section, Configuration& configuration, 
   // Beside a calibration it is of that one, and not of another that takes its place.
   if (readout && has_calibration) configuration.readout_s.reset();
   if (pose) {
-    std::string wrong = "a 4x4 matrix or a mapping of translation and quaternion is expected";
-    if (pose.IsSequence()) wrong = poseFromMatrix(pose, configuration.body_T_camera);
-    if (pose.IsMap()) wrong = poseFromMapping(pose, configuration.body_T_camera);
+    const std::string wrong = readPose(pose, configuration.body_T_camera);
     if (!wrong.empty()) tell(pose.Mark().line, "camera.body_T_camera: " + wrong);
   }
 }
 
 std::string formatCameraSection(const Configuration& configuration) {
-  const Pose& pose = configuration.body_T_camera;
-  const Eigen::Vector3d& t = pose.translation;
-  const Eigen::Quaterniond& q = pose.rotation;
   std::string text = "camera:\n";
   if (configuration.camera) {
     Camera camera = *configuration.camera;
@@ -269,9 +207,7 @@ std::string formatCameraSection(const Configuration& configuration) {
     text += "  readout: " + numberText(*configuration.readout_s) + "\n";
   }
   if (configuration.mask) text += "  mask: " + quoted(configuration.mask_path) + "\n";
-  text += "  body_T_camera: {translation: [" + numberText(t.x()) + ", " + numberText(t.y()) + ", " + numberText(t.z()) +
-          "], quaternion: [" + numberText(q.w()) + ", " + numberText(q.x()) + ", " + numberText(q.y()) + ", " +
-          numberText(q.z()) + "]}\n";
+  text += "  body_T_camera: " + formatPose(configuration.body_T_camera) + "\n";
   return text;
 }
 

@@ -32,12 +32,22 @@ std::string scaleProblem(const ServiceOptions& options) {
   return wrong.empty() ? "" : "scale.odometry_channel: " + wrong;
 }
 
+// The unit's channel among the others.
+std::string imuProblem(const Configuration& configuration) {
+  LcmOptions lcm = configuration.service.lcm;
+  if (!lcmProblem(lcm).empty()) return "";  // told of the section `lcm:`
+  lcm.imu_channel = configuration.inertia.channel;
+  const std::string wrong = lcmProblem(lcm);
+  return wrong.empty() ? "" : "imu.channel: " + wrong;
+}
+
 }  // namespace
 
 std::string sectionProblem(const std::string& section, const Configuration& configuration) {
   const ServiceOptions& service = configuration.service;
   if (section == "viewer") return viewerProblem(service.viewer);
   if (section == "ros2") return ros2Problem(service.ros2);
+  if (section == "imu") return imuProblem(configuration);
   if (section == "lcm") {
     if (const std::string wrong = lcmProblem(service.lcm); !wrong.empty()) return "lcm: " + wrong;
   }

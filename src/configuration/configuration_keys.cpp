@@ -94,6 +94,34 @@ Keys cameraKeys(CameraOptions& capture) {
   return keys;
 }
 
+// The inertial unit that is fixed to the camera.
+Keys imuKeys(InertiaConfiguration& inertia) {
+  InertialUnit& unit = inertia.unit;
+  Keys keys{
+      heading("imu",
+              "An inertial unit that is fixed to the camera: metres, z up, and poses through blur (docs/inertia.md)"),
+      {"imu.enabled", &inertia.is_used, "", 0, 0,
+       "its data are used: of live runs from LCM, of recorded frames those that lie beside them"},
+      text("imu.channel", &inertia.channel,
+           "of LCM, where it is published as edgeslam.imu_t, with time stamps of CLOCK_MONOTONIC as the camera's"),
+      special(
+          "imu.calibration",
+          "file with the unit (imu.yaml, docs/files.md), relative to this file; or its keys in its place:", "imu.yaml"),
+      special("imu.imu_T_camera",
+              "pose of the camera (x right, y down, z forward) in the unit's frame: 4x4 matrix row by row, or "
+              "translation [m]\nand unit quaternion (w, x, y, z)",
+              "{translation: [0, 0, 0], quaternion: [1, 0, 0, 0]}"),
+      {"imu.gyroscope_noise_density", &unit.rate_noise, "rad/s/sqrt(Hz)", 1e-7, 1, "noise, as data sheets have it"},
+      {"imu.gyroscope_random_walk", &unit.rate_walk, "rad/s^2/sqrt(Hz)", 1e-9, 1, "of its bias"},
+      {"imu.accelerometer_noise_density", &unit.force_noise, "m/s^2/sqrt(Hz)", 1e-6, 10, "noise"},
+      {"imu.accelerometer_random_walk", &unit.force_walk, "m/s^3/sqrt(Hz)", 1e-8, 10, "of its bias"},
+      {"imu.time_offset_s", &inertia.time_offset_s, "s", -10, 10,
+       "is added to a frame's time to have the unit's (Kalibr's timeshift_cam_imu)"},
+  };
+  for (ConfigurationKey& key : keys) key.for_users = !key.isHeading();
+  return keys;
+}
+
 // What `edgeslam run` gives out and keeps.
 Keys serviceKeys(ServiceOptions& service, Settings& settings) {
   RecordingSpace& space = settings.recording;
@@ -448,13 +476,14 @@ Keys methodKeys(Settings& settings) {
 
 std::vector<ConfigurationKey> configurationKeys(Configuration& configuration) {
   Keys keys = cameraKeys(configuration.capture);
+  for (ConfigurationKey& key : imuKeys(configuration.inertia)) keys.push_back(key);
   for (ConfigurationKey& key : serviceKeys(configuration.service, configuration.settings)) keys.push_back(key);
   for (ConfigurationKey& key : methodKeys(configuration.settings)) keys.push_back(key);
   return keys;
 }
 
 bool isOfMethod(const ConfigurationKey& key) {
-  constexpr std::array<const char*, 8> others{"camera", "capture",   "lcm",   "ros2",
+  constexpr std::array<const char*, 9> others{"camera", "capture",   "imu",   "lcm",   "ros2",
                                               "map",    "recording", "scale", "viewer"};
   return std::find(others.begin(), others.end(), key.section()) == others.end();
 }

@@ -5,6 +5,7 @@
 
 #include "configuration/configuration_camera.h"
 #include "configuration/configuration_capture.h"
+#include "configuration/configuration_imu.h"
 #include "configuration/configuration_keys.h"
 #include "recording/recording_layout.h"
 
@@ -56,10 +57,12 @@ std::string listing(bool for_users, const Format& format) {
 std::string formatConfiguration(const Configuration& configuration) {
   Configuration shown = configuration, usual;
   const std::vector<ConfigurationKey> keys = configurationKeys(shown), usual_keys = configurationKeys(usual);
-  std::string text = formatCameraSection(configuration) + formatCaptureSection(configuration.capture), section;
+  std::string text = formatCameraSection(configuration) + formatCaptureSection(configuration.capture) +
+                     formatImuSection(configuration.inertia),
+              section;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const ConfigurationKey& key = keys[i];
-    if (!key.hasField() || key.section() == "capture" || key.section() == "viewer") continue;
+    if (!key.hasField() || key.section() == "capture" || key.section() == "imu" || key.section() == "viewer") continue;
     const std::string value = valueText(key.field);
     if (!isOfMethod(key) && value == valueText(usual_keys[i].field)) continue;
     if (key.section() != section) text += key.section() + ":\n";

@@ -10,7 +10,7 @@
 #include "files/text_file.h"
 #include "frames/yaml_section.h"
 #include "geometry/median.h"
-#include "inertia/inertial_history.h"
+#include "inertia/inertial_watch.h"
 
 namespace edgeslam {
 namespace {
@@ -32,24 +32,14 @@ std::optional<InertialSample> parseSample(const std::string& text) {
   return sample;
 }
 
-// What no robot does all the time tells that a file is in other units.
 void checkUnits(const std::string& path, const std::vector<InertialSample>& samples) {
-  constexpr double least_force = 3, most_force = 40, most_rate = 12;
   std::vector<double> forces, rates;
   for (const InertialSample& sample : samples) {
     forces.push_back(sample.force.norm());
     rates.push_back(sample.rate.norm());
   }
-  const double force = upperMedian(std::move(forces)), rate = upperMedian(std::move(rates));
-  if (force < least_force || force > most_force) {
-    throw InputError(path + ": the specific force is " + std::to_string(force) +
-                     " in the median; expected about 9.8, in m/s^2 with gravity included" +
-                     (force > 0.5 && force < 1.5 ? ": is it in multiples of g?" : ""));
-  }
-  if (rate > most_rate) {
-    throw InputError(path + ": the rate of turning is " + std::to_string(rate) +
-                     " in the median; expected rad/s: is it in degrees?");
-  }
+  const std::string wrong = unitsProblem(upperMedian(std::move(forces)), upperMedian(std::move(rates)));
+  if (!wrong.empty()) throw InputError(path + ": " + wrong);
 }
 
 Pose readPose(const YamlSection& section, const std::string& key) {
@@ -135,11 +125,15 @@ InertialUnit readInertialUnit(const std::string& path) {
   });
 }
 
-InertialRecording readInertialRecording(const InertialFiles& files) {
+std::vector<InertialSample> readInertialSamples(const InertialFiles& files) {
   if (files.samples.empty()) throw InputError("no imu.csv (or EuRoC's imu0) lies beside the frames");
+  return readInertialSamples(files.samples);
+}
+
+InertialRecording readInertialRecording(const InertialFiles& files) {
+  std::vector<InertialSample> samples = readInertialSamples(files);
   if (files.unit.empty()) throw InputError(files.samples + ": no imu.yaml lies beside it, with imu_T_camera");
-  return {files.euroc_camera.empty() ? readInertialUnit(files.unit) : readEurocUnit(files),
-          readInertialSamples(files.samples)};
+  return {files.euroc_camera.empty() ? readInertialUnit(files.unit) : readEurocUnit(files), std::move(samples)};
 }
 
 }  // namespace edgeslam

@@ -25,6 +25,9 @@ struct InertialRecording {
 // stamp not after the one before, and where all of it must be in other units: degrees, or multiples of g.
 std::vector<InertialSample> readInertialSamples(const std::string& path);
 
+// Likewise, of what lies beside frames; throws InputError where nothing does.
+std::vector<InertialSample> readInertialSamples(const InertialFiles& files);
+
 // imu.yaml: imu_T_camera {translation [m], quaternion w x y z}, and, where they differ from the defaults,
 // gyroscope_noise_density, gyroscope_random_walk, accelerometer_noise_density, accelerometer_random_walk (Kalibr's
 // units), time_offset_s (Kalibr's timeshift_cam_imu: what is added to a frame's time for the unit's clock), rate_hz.

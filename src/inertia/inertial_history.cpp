@@ -9,13 +9,16 @@ constexpr int older_for_a_new_clock = 20;
 
 double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return static_cast<double>(to_ns - from_ns) * 1e-9; }
 
-bool isUsable(const InertialSample& sample) {
-  return sample.rate.allFinite() && sample.force.allFinite() &&
-         sample.rate.cwiseAbs().maxCoeff() <= InertialHistory::largest_rate &&
-         sample.force.cwiseAbs().maxCoeff() <= InertialHistory::largest_force;
-}
+constexpr std::int64_t largest_time_ns = 4'000'000'000'000'000'000;
+constexpr double largest_rate = 100, largest_force = 1000;  // [rad/s], [m/s^2]
 
 }  // namespace
+
+bool isUsable(const InertialSample& sample) {
+  return sample.time_ns >= 0 && sample.time_ns <= largest_time_ns && sample.rate.allFinite() &&
+         sample.force.allFinite() && sample.rate.cwiseAbs().maxCoeff() <= largest_rate &&
+         sample.force.cwiseAbs().maxCoeff() <= largest_force;
+}
 
 InertialHistory::InertialHistory(const InertialUnit& unit) : unit_(unit), samples_(most_samples) {}
 

@@ -8,6 +8,9 @@
 
 namespace edgeslam {
 
+// What a unit can have measured: finite, within what any unit measures, its time not negative and at most 4e18 ns.
+bool isUsable(const InertialSample& sample);
+
 class InertialHistory {
  public:
   // Takes all its memory at once.
@@ -29,8 +32,7 @@ class InertialHistory {
   std::optional<InertialSample> mean(std::int64_t until_ns, double seconds) const;
 
   static constexpr double longest_gap_s = 0.06, longest_wait_s = 0.02;
-  static constexpr double largest_rate = 100, largest_force = 1000;  // [rad/s], [m/s^2]
-  static constexpr std::size_t most_samples = 8192;                  // two seconds of the fastest units
+  static constexpr std::size_t most_samples = 8192;  // two seconds of the fastest units
 
  private:
   const InertialSample& at(std::size_t place) const { return samples_[(first_ + place) % most_samples]; }

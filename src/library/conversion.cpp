@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "frames/calibration_file.h"
+#include "inertia/inertial_history.h"
 #include "map/saved_map.h"
 #include "pipeline/map_records.h"
 
@@ -40,6 +41,7 @@ Configuration libraryConfiguration(const std::string& calibration_file, const st
   if (!calibration_file.empty()) configuration.camera = readCalibration(calibration_file);
   if (configuration.camera) {
     configuration.camera = asConfigured(*configuration.camera, configuration);
+    configuration.settings = settingsWithInertia(configuration);
     return configuration;
   }
   throw InputError(configuration_file + ": no calibration: give one (camera.calibration)");
@@ -64,6 +66,16 @@ cv::Mat checkedImage(const GreyImage& image, const Camera& camera, std::int64_t 
   // OpenCV has no constant views; nothing is written to it.
   return cv::Mat(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels),
                  static_cast<std::size_t>(image.bytes_per_row));
+}
+
+InertialSample checkedSample(const InertialMeasurement& measurement) {
+  InertialSample sample;
+  sample.time_ns = measurement.time_ns;
+  sample.rate = Eigen::Map<const Eigen::Vector3d>(measurement.rotation_rate.data());
+  sample.force = Eigen::Map<const Eigen::Vector3d>(measurement.specific_force.data());
+  if (isUsable(sample)) return sample;
+  throw InputError("inertial measurement of " + std::to_string(measurement.time_ns) +
+                   " ns: expected finite numbers that a unit can measure, in rad/s and m/s^2");
 }
 
 CameraPose publicPose(const Pose& world_T_camera) {
@@ -92,6 +104,12 @@ PosedFrame publicFrame(const FrameResult& result, const std::optional<OdometryFr
     frame.odometry = publicPose(odometry->odom_T_camera);
     frame.odometry_covariance = publicCovariance(odometry->covariance);
     frame.odometry_resets = odometry->resets;
+  }
+  if (result.inertia && result.inertia->is_known) {
+    frame.is_metric = true;
+    frame.metres_per_unit = result.inertia->metres_a_unit;
+    frame.scale_sigma = result.inertia->scale_sigma;
+    Eigen::Map<Eigen::Vector3d>(frame.down.data()) = result.inertia->gravity.normalized();
   }
   frame.tracked_points = result.tracked_points;
   frame.mapped_points = result.mapped_points;

@@ -8,6 +8,7 @@
 
 #include "configuration/configuration.h"
 #include "edgeslam/types.h"
+#include "inertia/inertial_unit.h"
 #include "map/map.h"
 #include "tracking/frame_result.h"
 #include "visual_odometry/odometry_frame.h"
@@ -21,6 +22,9 @@ Configuration libraryConfiguration(const std::string& calibration_file, const st
 // `last_time_ns`.
 cv::Mat checkedImage(const GreyImage& image, const Camera& camera, std::int64_t time_ns, std::int64_t last_time_ns);
 void requireLater(std::int64_t time_ns, std::int64_t last_time_ns);
+
+// Throws InputError where no unit can have measured it.
+InertialSample checkedSample(const InertialMeasurement& measurement);
 
 CameraPose publicPose(const Pose& world_T_camera);
 int publicWorld(int world);  // of a pose

@@ -80,6 +80,8 @@ void LiveSlam::handOver(const GreyImage& image, std::int64_t time_ns) {
   work_->run.handOver();
 }
 
+void LiveSlam::add(const InertialMeasurement& measurement) { work_->run.add(checkedSample(measurement)); }
+
 LiveCounters LiveSlam::counters() const {
   const LiveCounts counts = work_->run.counts();
   return {counts.captured, counts.processed, counts.passed_over, counts.keyframes, counts.points};

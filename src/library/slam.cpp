@@ -55,6 +55,8 @@ void Slam::goOnWith(const std::string& map_file) {
   work_->needs_map = false;
 }
 
+void Slam::add(const InertialMeasurement& measurement) { work_->run.add(checkedSample(measurement)); }
+
 PosedFrame Slam::process(const GreyImage& image, std::int64_t time_ns) {
   work_->requireOpen();
   const cv::Mat grey = checkedImage(image, work_->camera, time_ns, work_->last_time_ns);

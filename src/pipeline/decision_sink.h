@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "inertia/inertial_unit.h"
 #include "map/keyframe.h"
 
 namespace edgeslam {
@@ -15,6 +16,8 @@ class DecisionSink {
   virtual ~DecisionSink() = default;
   // Before frame `frame_index` was processed, tracking took map update `number`.
   virtual void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept = 0;
+  // Before frame `frame_index` was processed, tracking was given what the inertial unit measured.
+  virtual void measured(std::int64_t frame_index, const InertialSample& sample) noexcept = 0;
   // Frame `frame_index` tells mapping nothing, mapping being far behind.
   virtual void mappingBusy(std::int64_t frame_index) noexcept = 0;
   // Before message `message` was handled, mapping applied correction `number`.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+#include "inertia/inertial_unit.h"
 #include "pipeline/channel.h"
 #include "pipeline/frame_slots.h"
 #include "pipeline/messages.h"
@@ -34,9 +35,10 @@ struct LiveChannels {
   // Frames of this size [px]; messages that hold so many observations without taking memory.
   LiveChannels(int width, int height, std::size_t observations);
 
-  FrameSlots frames;                                             // capture to tracking
-  Channel<MappingMessage> messages{64};                          // tracking to mapping
-  TripleBuffer<MapUpdate> updates;                               // mapping to tracking
+  FrameSlots frames;                                          // capture to tracking
+  boost::lockfree::spsc_queue<InertialSample> inertia{4096};  // from outside to tracking: a second of the fastest units
+  Channel<MappingMessage> messages{64};                       // tracking to mapping
+  TripleBuffer<MapUpdate> updates;                            // mapping to tracking
   boost::lockfree::spsc_queue<AppliedCorrection> applied{1024};  // mapping to tracking, for the sink
   Channel<Snapshot> snapshots{1};                                // mapping to places
   Channel<Correction> corrections{2};                            // places to mapping

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "inertia/inertial_history.h"
+
 namespace edgeslam {
 namespace {
 
@@ -76,6 +78,12 @@ void LiveRun::handOver() {
   channels_.frame_ready.post();
 }
 
+bool LiveRun::add(const InertialSample& sample) {
+  const bool is_taken = isUsable(sample) && channels_.inertia.push(sample);
+  if (!is_taken) inertia_lost_.fetch_add(1, std::memory_order_relaxed);
+  return is_taken;
+}
+
 void LiveRun::stop(bool settle) {
   if (!publishing_thread_.joinable()) return;
   // No thread could be started for them.
@@ -100,6 +108,7 @@ const Mapper& LiveRun::mapper() const {
 LiveCounts LiveRun::counts() const {
   LiveCounts counts;
   counts.captured = captured_.load(std::memory_order_relaxed);
+  counts.inertia_lost = inertia_lost_.load(std::memory_order_relaxed);
   tracking_.count(counts);
   counts.messages_waiting = channels_.messages.waiting();
   counts.results_waiting = channels_.results.waiting();

@@ -33,6 +33,7 @@ void LiveTracking::track(FrameSlot& slot) {
   const Measured measured(durations_);
   tellPassedOver();
   takeUpdate(slot.index);
+  takeInertia(slot.index);
   const bool mapping_busy = isMappingBusy();
   if (mapping_busy) mapping_behind_.fetch_add(1, std::memory_order_relaxed);
   if (mapping_busy && sink_) sink_->mappingBusy(slot.index);
@@ -61,6 +62,15 @@ void LiveTracking::takeUpdate(std::int64_t frame_index) {
   tellApplied();
   worker_.take(channels_.updates.reading());
   if (sink_) sink_->tookUpdate(frame_index, channels_.updates.reading().number);
+}
+
+// All that has come: what comes later than its frame, the next one has.
+void LiveTracking::takeInertia(std::int64_t frame_index) {
+  InertialSample sample;
+  while (channels_.inertia.pop(sample)) {
+    worker_.add(sample);
+    if (sink_) sink_->measured(frame_index, sample);
+  }
 }
 
 // Before the update that follows from it is told.

@@ -40,6 +40,7 @@ class LiveTracking {
   void track(FrameSlot& slot);
   void tellPassedOver();
   void takeUpdate(std::int64_t frame_index);
+  void takeInertia(std::int64_t frame_index);
   bool isMappingBusy() const;
   void publish(const FrameSlot& slot, const FrameResult& result);
   void sendMessages();

@@ -45,6 +45,7 @@ void LockstepRun::goOnWith(Map map) {
 
 const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
   takeDueUpdate(index);
+  takeRecordedInertia(index);
   messages_.clear();
   const bool mapping_busy = recorded_ && recorded_->mapping_busy.count(index) > 0;
   latest_ = &tracking_.process(index, time_ns, grey, mapping_busy, messages_);
@@ -60,6 +61,7 @@ const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns
 
 const FrameRecord& LockstepRun::skip(std::int64_t index, std::int64_t time_ns, const std::string& problem) {
   takeDueUpdate(index);
+  takeRecordedInertia(index);
   ++processed_;
   latest_ = &tracking_.skip(index, time_ns, problem);
   return record_.add(*latest_, /*unreadable=*/true);
@@ -72,6 +74,13 @@ void LockstepRun::takeDueUpdate(std::int64_t frame_index) {
     newest = std::move(updates_.front().update);
   }
   if (newest) tracking_.take(*newest);
+}
+
+void LockstepRun::takeRecordedInertia(std::int64_t frame_index) {
+  if (!recorded_) return;
+  const auto measured = recorded_->inertia.find(frame_index);
+  if (measured == recorded_->inertia.end()) return;
+  for (const InertialSample& sample : measured->second) tracking_.add(sample);
 }
 
 bool LockstepRun::isDue(const DueUpdate& update, std::int64_t frame_index) const {

@@ -45,6 +45,9 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
         .events.push_back(formatted("the inertial unit tells metres and upright: a map unit is %.3f m +- %.1f %%",
                                     known->metres_a_unit, 100 * known->scale_sigma));
   }
+  if (mapper_.lackingForInertia() != lacking_for_inertia_) {
+    report(last_frame_).lacking_for_inertia = lacking_for_inertia_ = mapper_.lackingForInertia();
+  }
   if (mapper_.initialised()) {
     new_keyframe_ = true;
     relocalisation_.update(mapper_.map());

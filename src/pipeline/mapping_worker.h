@@ -64,6 +64,7 @@ class MappingWorker {
   Pose found_reference_T_camera_;
   std::string not_found_;
   std::int64_t next_update_ = 0;
+  std::string lacking_for_inertia_;  // that was reported
   std::vector<MappingReport> reports_;
 };
 

@@ -18,6 +18,14 @@ void FlightRecorder::tookUpdate(std::int64_t frame_index, std::int64_t number) n
   postNumbered(DecisionKind::update, frame_index, number);
 }
 
+void FlightRecorder::measured(std::int64_t frame_index, const InertialSample& sample) noexcept {
+  const auto count = static_cast<std::size_t>(measured_.number);
+  if (count == measured_.samples.size() || measured_.index != frame_index) postMeasured();
+  measured_.kind = DecisionKind::inertia;
+  measured_.index = frame_index;
+  measured_.samples[static_cast<std::size_t>(measured_.number++)] = sample;
+}
+
 void FlightRecorder::appliedCorrection(std::int64_t message, std::int64_t number) noexcept {
   postNumbered(DecisionKind::correction, message, number);
 }
@@ -50,7 +58,19 @@ RecordingStatus FlightRecorder::stop() {
   return thread_.stop();
 }
 
+// Before anything else is told.
+void FlightRecorder::postMeasured() noexcept {
+  if (measured_.number == 0) return;
+  hand(measured_);
+  measured_.number = 0;
+}
+
 void FlightRecorder::post(RecordingEntry entry) noexcept {
+  postMeasured();
+  hand(std::move(entry));
+}
+
+void FlightRecorder::hand(RecordingEntry entry) noexcept {
   posting_.store(true);
   if (!ended_.load()) thread_.post(std::move(entry));
   posting_.store(false);

@@ -20,6 +20,7 @@ class FlightRecorder : public DecisionSink {
 
   void mappingBusy(std::int64_t frame_index) noexcept override;
   void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept override;
+  void measured(std::int64_t frame_index, const InertialSample& sample) noexcept override;
   void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override;
   void passedOver(std::int64_t index, std::int64_t time_ns) noexcept override;
   void processed(const std::shared_ptr<const FrameImages>& images) noexcept override;
@@ -34,9 +35,12 @@ class FlightRecorder : public DecisionSink {
 
  private:
   void post(RecordingEntry entry) noexcept;
+  void postMeasured() noexcept;
+  void hand(RecordingEntry entry) noexcept;
   void postNumbered(DecisionKind kind, std::int64_t index, std::int64_t number) noexcept;
 
   const std::string folder_;
+  RecordingEntry measured_;  // what waits to go together
   std::atomic<bool> ended_{false}, posting_{false};
   RecordingThread thread_;
 };

@@ -9,6 +9,7 @@
 #include "edgeslam/input_error.h"
 #include "files/format_text.h"
 #include "files/text_file.h"
+#include "inertia/inertial_history.h"
 
 namespace edgeslam {
 namespace {
@@ -27,12 +28,14 @@ struct LineForm {
   const char* expected;
 };
 
-constexpr std::array<LineForm, 9> line_forms{{
+constexpr std::array<LineForm, 10> line_forms{{
     {DecisionKind::frame, "frame", &Decision::index, &Decision::time_ns, false, "frame INDEX TIME_NS"},
     {DecisionKind::dropped, "dropped", &Decision::index, &Decision::time_ns, false, "dropped INDEX TIME_NS"},
     {DecisionKind::unreadable, "unreadable", &Decision::index, &Decision::time_ns, true,
      "unreadable INDEX TIME_NS REASON"},
     {DecisionKind::update, "update", &Decision::index, &Decision::number, false, "update INDEX NUMBER"},
+    {DecisionKind::inertia, "inertia", &Decision::index, &Decision::time_ns, true,
+     "inertia INDEX TIME_NS RATE RATE RATE FORCE FORCE FORCE"},
     {DecisionKind::busy, "busy", &Decision::index, nullptr, false, "busy INDEX"},
     {DecisionKind::correction, "correction", &Decision::index, &Decision::number, false, "correction MESSAGE NUMBER"},
     {DecisionKind::gap, "gap", &Decision::number, nullptr, false, "gap COUNT"},
@@ -63,6 +66,28 @@ std::string_view takeWord(std::string_view& text) {
 
 }  // namespace
 
+Decision inertiaDecision(std::int64_t frame_index, const InertialSample& sample) {
+  const Eigen::Vector3d &rate = sample.rate, &force = sample.force;
+  return {
+      DecisionKind::inertia, frame_index, sample.time_ns, 0,
+      formatted("%.17g %.17g %.17g %.17g %.17g %.17g", rate.x(), rate.y(), rate.z(), force.x(), force.y(), force.z())};
+}
+
+std::optional<InertialSample> inertialSampleOf(const Decision& decision) {
+  const std::vector<std::string_view> columns = splitColumns(decision.text);
+  if (columns.size() != 6) return std::nullopt;
+  InertialSample sample;
+  sample.time_ns = decision.time_ns;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::optional<double> rate = parseNumber(columns[static_cast<std::size_t>(axis)]);
+    const std::optional<double> force = parseNumber(columns[static_cast<std::size_t>(axis) + 3]);
+    if (!rate || !force) return std::nullopt;
+    sample.rate[axis] = *rate;
+    sample.force[axis] = *force;
+  }
+  return isUsable(sample) ? std::optional(sample) : std::nullopt;
+}
+
 std::string formatDecision(const Decision& decision) {
   const LineForm& form = *std::find_if(line_forms.begin(), line_forms.end(),
                                        [&](const LineForm& candidate) { return candidate.kind == decision.kind; });
@@ -89,8 +114,9 @@ Decision parseDecision(std::string_view text, const std::string& place) {
   const auto* const form = std::find_if(line_forms.begin(), line_forms.end(),
                                         [&](const LineForm& candidate) { return candidate.word == word; });
   if (form == line_forms.end()) {
-    throw InputError(place + "expected frame, dropped, unreadable, update, correction, gap, stopped or end, found '" +
-                     found + "'");
+    throw InputError(
+        place + "expected frame, dropped, unreadable, update, inertia, busy, correction, gap, stopped or end, found '" +
+        found + "'");
   }
   const auto wrongForm = [&] {
     return InputError(place + "expected '" + form->expected + "', numbers whole and of 0 to 4e18, found '" + found +
@@ -135,6 +161,10 @@ std::string DecisionOrder::add(const Decision& decision) {
       if (decision.number <= update_number_) return goesBack("the update", decision.number, update_number_);
       update_index_ = decision.index;
       update_number_ = decision.number;
+      break;
+    case DecisionKind::inertia:
+      if (decision.index < inertia_index_) return goesBack("inertia's frame", decision.index, inertia_index_);
+      inertia_index_ = decision.index;
       break;
     case DecisionKind::busy:
       if (decision.index <= busy_index_) return goesBack("the busy frame", decision.index, busy_index_);

@@ -37,8 +37,8 @@ std::string framePath(const Recording& recording, std::int64_t time_ns) {
 
 void checkFormat(const std::string& version, const std::string& place) {
   const std::string known = std::to_string(recording_format_version);
-  if (version == known) return;
-  throw InputError(place + "format version " + version + "; this program reads version " + known);
+  if (version == known || version == "1") return;
+  throw InputError(place + "format version " + version + "; this program reads version 1 to " + known);
 }
 
 // recording.txt: the program's version.
@@ -88,6 +88,10 @@ DecisionLines readDecisionLines(const std::string& path) {
     }
     const Decision decision = parseDecision(*text, place);
     if (const std::string problem = order.add(decision); !problem.empty()) throw InputError(place + problem);
+    if (decision.kind == DecisionKind::inertia && !inertialSampleOf(decision)) {
+      throw InputError(place + "expected six numbers that an inertial unit can have measured, found '" + decision.text +
+                       "'");
+    }
     if (decision.kind == DecisionKind::stopped) lines.note = "recording stopped before the run did: " + decision.text;
     lines.ended = decision.kind == DecisionKind::end;
     lines.decisions.push_back(decision);
@@ -146,6 +150,9 @@ void take(const Decision& decision, Recording& recording) {
     case DecisionKind::update:
       decisions.updates.push_back({decision.index, decision.number});
       break;
+    case DecisionKind::inertia:
+      decisions.inertia.push_back({decision.index, *inertialSampleOf(decision)});
+      break;
     case DecisionKind::busy:
       decisions.busy.push_back(decision.index);
       break;
@@ -167,6 +174,7 @@ void take(const Decision& decision, Recording& recording) {
 RunDecisions runDecisions(const Decisions& recorded) {
   RunDecisions decisions;
   for (const UpdateTaken& update : recorded.updates) decisions.updates[update.frame_index] = update.number;
+  for (const InertiaGiven& given : recorded.inertia) decisions.inertia[given.frame_index].push_back(given.sample);
   decisions.mapping_busy.insert(recorded.busy.begin(), recorded.busy.end());
   for (const CorrectionApplied& correction : recorded.corrections) {
     decisions.corrections[correction.message].push_back(correction.number);

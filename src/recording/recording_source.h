@@ -24,6 +24,12 @@ struct CorrectionApplied {
   std::int64_t number = 0;
 };
 
+// Before processing frame `frame_index`, tracking was given this.
+struct InertiaGiven {
+  std::int64_t frame_index = 0;
+  InertialSample sample;
+};
+
 struct DroppedFrame {
   std::int64_t index = 0;
   std::int64_t time_ns = 0;
@@ -33,6 +39,7 @@ struct DroppedFrame {
 struct Decisions {
   std::vector<UpdateTaken> updates;
   std::vector<CorrectionApplied> corrections;
+  std::vector<InertiaGiven> inertia;
   std::vector<DroppedFrame> dropped;
   std::vector<std::int64_t> busy;  // frames that told mapping nothing, mapping being far behind
   std::int64_t not_recorded = 0;   // frames and decisions; above 0, the recording does not repeat the run

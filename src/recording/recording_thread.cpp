@@ -117,6 +117,10 @@ void RecordingThread::write(const QueuedEntry& queued) {
   const RecordingEntry& entry = queued.entry;
   if (entry.kind == DecisionKind::frame) {
     writer_.writeFrame(entry.index, entry.time_ns, entry.images->pyramid.levels[0]);
+  } else if (entry.kind == DecisionKind::inertia) {
+    for (std::int64_t i = 0; i < entry.number; ++i) {
+      writer_.writeDecision(inertiaDecision(entry.index, entry.samples[static_cast<std::size_t>(i)]));
+    }
   } else {
     writer_.writeDecision({entry.kind, entry.index, entry.time_ns, entry.number, entry.reason.data()});
   }

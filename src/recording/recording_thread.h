@@ -11,6 +11,7 @@
 #include <string_view>
 #include <thread>
 
+#include "inertia/inertial_unit.h"
 #include "map/keyframe.h"
 #include "recording/recording_writer.h"
 
@@ -23,7 +24,8 @@ struct RecordingEntry {
   std::int64_t index = 0;                     // as in Decision
   std::int64_t time_ns = 0;
   std::int64_t number = 0;
-  std::array<char, 160> reason{};  // of an unreadable frame: up to the first zero
+  std::array<char, 160> reason{};            // of an unreadable frame: up to the first zero
+  std::array<InertialSample, 16> samples{};  // of kind `inertia`: the first `number` of them
 };
 
 // Cuts off what does not fit.
@@ -32,9 +34,10 @@ RecordingEntry unreadableFrameEntry(std::int64_t index, std::int64_t time_ns, st
 class RecordingThread {
  public:
   // Opens the recording (RecordingWriter::open, which may throw InputError) and starts the thread, at nice 10.
-  // `capacity`: entries that may wait, each frame among them holding its image; the default is 2 s of frames.
+  // `capacity`: entries that may wait, each frame among them holding its image; the default is 1 s of frames with
+  // inertia at 1 kHz, and 2 s without it.
   RecordingThread(const std::string& folder, const RecordingDescription& description,
-                  const RecordingLimits& limits = {}, std::size_t capacity = 64);
+                  const RecordingLimits& limits = {}, std::size_t capacity = 128);
   // stop()
   ~RecordingThread();
   RecordingThread(const RecordingThread&) = delete;

@@ -3,7 +3,7 @@
 
 namespace edgeslam {
 
-enum class ScaleKind { unknown, known_distance, camera_height, odometry };
+enum class ScaleKind { unknown, known_distance, camera_height, odometry, inertia };
 
 struct ScaleState {
   ScaleKind kind = ScaleKind::unknown;

@@ -26,6 +26,11 @@ class CaptureLink {
     const std::lock_guard<std::mutex> lock(mutex_);
     camera_problem_ = problem;
   }
+  // What is wrong with what the inertial unit gives; empty where nothing is.
+  void setInertiaProblem(const std::string& problem) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    inertia_problem_ = problem;
+  }
   // There is no frame to be had at present, and capture is not stuck.
   void waited() { waits_.fetch_add(1, std::memory_order_relaxed); }
   // Frames that the camera lost or that newer ones overtook in its driver, and those that could not even be handed on.
@@ -48,6 +53,10 @@ class CaptureLink {
   std::string cameraProblem() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return camera_problem_;
+  }
+  std::string inertiaProblem() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return inertia_problem_;
   }
   std::int64_t waits() const { return waits_.load(std::memory_order_relaxed); }
   std::int64_t lost() const { return lost_.load(std::memory_order_relaxed); }
@@ -73,7 +82,7 @@ class CaptureLink {
 
  private:
   mutable std::mutex mutex_;
-  std::string camera_problem_;
+  std::string camera_problem_, inertia_problem_;
   std::optional<Command> request_;
   std::optional<Command> underway_;  // requested and not answered yet
   std::vector<Answer> answers_;

@@ -21,6 +21,7 @@ Daemon::Daemon(DaemonSetup setup, EventLog& log)
   page_ = std::make_unique<DaemonPage>(setup_, camera_->stream().camera, signals_, log_);
   publisher_ = std::make_unique<RunPublisher>(publishingSetup(setup_, page_->viewer()), link_, log_);
   intake_ = std::make_unique<FrameIntake>(*camera_, link_, log_);
+  openInertia();
   map_ = std::move(setup_.map_in);
   if (map_) start_ = RunStart::saved_map;
   beginRecording();
@@ -34,6 +35,17 @@ void Daemon::openCamera() {
   link_.setCameraProblem(problem);
   const StreamDescription& stream = camera_->stream();
   log_.tell(problem.empty() ? "camera: " + stream.camera + ", " + stream.format : "waiting for the camera: " + problem);
+}
+
+void Daemon::openInertia() {
+  const InertiaConfiguration& inertia = setup_.configuration.inertia;
+  if (!inertia.is_used) return;
+  if (ImuReceiver* receiver = publisher_->imu()) {
+    inertia_ = std::make_unique<InertiaIntake>(*receiver, inertia.unit.offset_ns, link_, log_);
+  } else {
+    log_.tell("runs on the camera alone: what the inertial unit measures cannot be received over " +
+              effectiveUrl(setup_.configuration.service.lcm));
+  }
 }
 
 // From the start of the run to come.
@@ -107,6 +119,7 @@ Daemon::RunEnd Daemon::capture(LiveRun& run) {
       log_.tell(camera_->stream().camera + ": at its end");
       return {std::nullopt, true};
     }
+    if (inertia_) inertia_->take(captured, run);
     intake_->take(captured, run);
     if (captured.event == CaptureEvent::frame && !std::exchange(readout_told_, true)) tellReadout();
   }

@@ -12,6 +12,7 @@
 #include "service/daemon_signals.h"
 #include "service/event_log.h"
 #include "service/frame_intake.h"
+#include "service/inertia_intake.h"
 #include "service/next_recording.h"
 #include "service/run_publisher.h"
 
@@ -35,6 +36,7 @@ class Daemon {
   };
 
   void openCamera();
+  void openInertia();
   void beginRecording();
   void oneRun();
   void tellProcessorProblems(const LiveRun& run);
@@ -52,6 +54,7 @@ class Daemon {
   std::unique_ptr<DaemonPage> page_;
   std::unique_ptr<RunPublisher> publisher_;
   std::unique_ptr<FrameIntake> intake_;
+  std::unique_ptr<InertiaIntake> inertia_;  // null: there is no unit
 
   RunStart start_ = RunStart::new_map;
   std::optional<Map> map_;  // that the run to come continues

@@ -25,6 +25,7 @@ PublishingSetup publishingSetup(const DaemonSetup& setup, Viewer* viewer) {
   publishing.viewer = viewer;
   publishing.map_file = setup.map_out;
   publishing.begins_anew = true;
+  if (setup.configuration.inertia.is_used) publishing.lcm.imu_channel = setup.configuration.inertia.channel;
   return publishing;
 }
 

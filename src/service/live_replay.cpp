@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "frames/frame_problem.h"
+#include "frames/inertial_feed.h"
 #include "map/saved_map.h"
 #include "pipeline/live_run.h"
 #include "pipeline/run_record.h"
@@ -41,8 +42,8 @@ void keepMap(const Map& map, const Camera& camera, const std::string& folder) {
   }
 }
 
-// Each frame at its time.
-void feed(FrameSource& source, const Camera& camera, double pace, LiveRun& run) {
+// Each frame at its time, and before it what was measured until then.
+void feed(FrameSource& source, const Camera& camera, double pace, InertialFeed& inertia, LiveRun& run) {
   std::optional<Clock::time_point> start;
   std::int64_t first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
@@ -57,6 +58,7 @@ void feed(FrameSource& source, const Camera& camera, double pace, LiveRun& run) 
     if (slot.problem.empty()) frame->grey.copyTo(slot.grey);
     const auto since_start = static_cast<std::int64_t>(static_cast<double>(frame->time_ns - first_ns) / pace);
     std::this_thread::sleep_until(*start + std::chrono::nanoseconds(since_start));
+    inertia.giveUntil(frame->time_ns, [&](const InertialSample& sample) { run.add(sample); });
     run.handOver();
   }
 }
@@ -98,7 +100,9 @@ LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Set
     problems.push_back(*refused);
   }
   tell(problems);
-  feed(source, camera, replay.pace, run);
+  const std::optional<InertialUnit>& unit = settings.tracking.inertia;
+  InertialFeed inertia(replay.inertia, unit ? unit->offset_ns : 0);
+  feed(source, camera, replay.pace, inertia, run);
   setUpThread({"edgeslam", 0, 0, false, {}});
   run.stop(/*settle=*/true);
   if (replay.publisher) replay.publisher->end(/*is_last=*/true);

@@ -4,8 +4,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "frames/frame_source.h"
+#include "inertia/inertial_unit.h"
 #include "map/map.h"
 #include "pipeline/run_result.h"
 #include "pipeline/settings.h"
@@ -18,10 +20,11 @@ class RunPublisher;
 
 struct LiveReplay {
   std::optional<Map> map_in;
-  double pace = 1;                    // frames come so many times as fast as their time stamps say
-  std::string record_folder;          // empty: not recorded
-  RecordingDescription description;   // of the recording
-  RunPublisher* publisher = nullptr;  // null: nothing is published
+  std::vector<InertialSample> inertia;  // what was measured beside the frames; times ascend
+  double pace = 1;                      // frames come so many times as fast as their time stamps say
+  std::string record_folder;            // empty: not recorded
+  RecordingDescription description;     // of the recording
+  RunPublisher* publisher = nullptr;    // null: nothing is published
   // Called for each frame, in order, by another thread.
   std::function<void(const FrameResult&, const std::string& problem)> progress;
 };

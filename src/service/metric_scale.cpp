@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <utility>
@@ -11,6 +12,8 @@
 
 namespace edgeslam {
 namespace {
+
+constexpr double largest_tilt = 0.017;  // of what is published as up [rad]
 
 std::string scaleText(const ScaleState& scale) {
   return formatted("the scale is %.6g metres a map unit, standard deviation %.2g %%", scale.metres_per_unit,
@@ -29,7 +32,7 @@ std::string withoutDigits(std::string text) {
 MetricScale::MetricScale(const ScaleOptions& options, const Pose& body_T_camera, LcmPublisher& publisher,
                          BackgroundWork& work, EventLog& log)
     : options_(options), body_T_camera_(body_T_camera), publisher_(publisher), work_(work), log_(log) {
-  worlds_.insert({no_world, {ScaleSearch(options, body_T_camera), {}}});
+  worlds_.insert({no_world, WorldScale{ScaleSearch(options, body_T_camera), {}}});
 }
 
 // Nothing is known of it but what the wheels said last.
@@ -57,6 +60,12 @@ void MetricScale::noMap() {
   begin(no_world);
   world_ = no_world;
   publisher_.setScale({});
+  publisher_.setDown({});
+}
+
+void MetricScale::beforeFrame(const FrameResult& result) {
+  enterWorld(result);
+  takeInertia(result);
 }
 
 // A map that begins under a number known from before is another one.
@@ -73,6 +82,28 @@ void MetricScale::enterWorld(const FrameResult& result) {
   if (isKnown()) log_.tell(scaleText(here().scale));
   if (was_known && !isKnown()) log_.tell("the scale is unknown in this map");
   publisher_.setScale(here().scale);
+  publisher_.setDown(here().down);
+}
+
+// The first time at once, with where up is: what is published changes once. Up stays then, but where it was wrong.
+void MetricScale::takeInertia(const FrameResult& result) {
+  if (!result.inertia || !result.inertia->is_known || worldOf(result) != world_) return;
+  WorldScale& world = here();
+  world.inertia = result.inertia;
+  const Eigen::Vector3d down = result.inertia->gravity.normalized();
+  if (!world.down || std::acos(std::min(1.0, down.dot(*world.down))) > largest_tilt) {
+    world.down = down;
+    publisher_.setDown(down);
+  }
+  if (world.by_inertia.scale().kind == ScaleKind::unknown) followInertia();
+}
+
+// What was set by command, or came with a saved map, stays.
+void MetricScale::followInertia() {
+  WorldScale& world = here();
+  if (!world.inertia) return;
+  world.by_inertia.follow({std::log(world.inertia->metres_a_unit), world.inertia->scale_sigma, ""}, ScaleKind::inertia);
+  if (world.scale.kind != ScaleKind::known_distance) take(world.by_inertia.scale());
 }
 
 // A saved map is the first world.
@@ -91,7 +122,7 @@ void MetricScale::mapWasCorrected() {
 }
 
 void MetricScale::frame(const FrameResult& result) {
-  enterWorld(result);
+  beforeFrame(result);
   history_.add(result);
   takeOdometry();
   here().search.add(result);
@@ -118,7 +149,8 @@ bool MetricScale::everySecond(double seconds, bool has_points) {
   ScaleSearch& search = here().search;
   const std::optional<ScaleState> found = search.everySecond();
   if (here().scale.kind == ScaleKind::known_distance) return false;
-  if (found) take(*found);
+  followInertia();
+  if (found && !here().inertia) take(*found);
   tellProblem();
   if (!search.wantsMap(seconds) || !has_points) return false;
   search.mapComes(seconds);
@@ -134,6 +166,7 @@ void MetricScale::take(const ScaleState& found) {
 
 std::string MetricScale::problem() const {
   if (here().scale.kind == ScaleKind::known_distance) return "";
+  if (!inertia_lacks_.empty() && !isKnown()) return inertia_lacks_;
   const std::string problem = here().search.problem();
   const std::int64_t ignored = publisher_.odometryIgnored();
   if (problem.empty() || ignored == 0) return problem;

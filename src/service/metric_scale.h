@@ -1,10 +1,12 @@
-// The metric scale of the world that the camera is in: set by command, come with a saved map, or found by itself. Each
-// world has its own, which is there again where the camera comes back. Poses go out with it, and the log is told of it.
+// The metric scale of the world that the camera is in: set by command, come with a saved map, found by itself, or told
+// by inertia together with where up is. Each world has its own, which is there again where the camera comes back. Poses
+// go out with it, and the log is told of it.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -31,7 +33,7 @@ class MetricScale {
   // The next map is being looked for: lengths have no unit that is known. Those of the worlds there are stay.
   void noMap();
   // Of each frame, before it is published: poses of another world than before have that one's scale.
-  void enterWorld(const FrameResult& result);
+  void beforeFrame(const FrameResult& result);
   // A saved map is continued: what the configuration says of its scale.
   void takeConfigured();
   // By a loop: positions before and after do not go together.
@@ -40,6 +42,8 @@ class MetricScale {
 
   // Each frame, in order.
   void frame(const FrameResult& result);
+  // Why inertia does not tell it; empty where it does.
+  void inertiaLacks(const std::string& what) { inertia_lacks_ = what; }
   // The wheels', all that came.
   void takeOdometry();
   // A command set_scale.
@@ -60,13 +64,19 @@ class MetricScale {
 
   struct WorldScale {
     ScaleSearch search;
-    ScaleState scale;
+    ScaleState scale{};
+    GradualScale by_inertia{1};
+    std::optional<Eigen::Vector3d> down{};  // by inertia, as it is published
+    std::optional<InertialAlignment> inertia{};
   };
 
   const WorldScale& here() const { return worlds_.at(world_); }
   WorldScale& here() { return worlds_.at(world_); }
   void begin(int world);
   void forgetWhatIsUnderWay();
+  void enterWorld(const FrameResult& result);
+  void takeInertia(const FrameResult& result);
+  void followInertia();
   void take(const ScaleState& found);
   void tellProblem();
 
@@ -76,11 +86,12 @@ class MetricScale {
   BackgroundWork& work_;
   EventLog& log_;
   PositionHistory history_;
-  std::map<int, WorldScale> worlds_;     // by number; that of no world yet, too
-  int world_ = no_world;                 // that the last pose was in
-  bool ground_wanted_ = false;           // of the map that was asked for
-  KeyframeId ground_keyframe_ = -1;      // the latest of the map in which it was looked for
-  std::int64_t ground_looks_void_ = 0;   // counts what makes looks under way worthless
+  std::map<int, WorldScale> worlds_;    // by number; that of no world yet, too
+  int world_ = no_world;                // that the last pose was in
+  bool ground_wanted_ = false;          // of the map that was asked for
+  KeyframeId ground_keyframe_ = -1;     // the latest of the map in which it was looked for
+  std::int64_t ground_looks_void_ = 0;  // counts what makes looks under way worthless
+  std::string inertia_lacks_;
   std::set<std::string> told_problems_;  // without their numbers
 };
 

@@ -72,7 +72,7 @@ LiveObserver RunPublisher::observer() {
 void RunPublisher::frame(const FrameResult& result, const std::string& problem) {
   const bool is_initialising = result.state == TrackingState::initialising;
   if (is_initialising && (state_ != TrackingState::initialising || scale_.isKnown())) scale_.noMap();
-  scale_.enterWorld(result);
+  scale_.beforeFrame(result);
   const SentFrame sent = publisher_.frame(result);
   if (ros2_) ros2_->frame(sent);
   if (viewer_) viewer_->frame(result);
@@ -88,6 +88,7 @@ void RunPublisher::frame(const FrameResult& result, const std::string& problem) 
 void RunPublisher::report(const MappingReport& report) {
   totals_.report(report);
   if (report.loop) scale_.mapWasCorrected();
+  if (report.lacking_for_inertia) scale_.inertiaLacks(*report.lacking_for_inertia);
   log_.report(report);
   if (!report.map) return;
   map_.mapCame(report.map);
@@ -149,7 +150,8 @@ PublisherStatus RunPublisher::status() const {
   status.frames_dropped += link_.lost();
   status.recording = recording_.goesOn();
   status.camera_problem = link_.cameraProblem();
-  status.scale_problem = scale_.problem();
+  status.scale_problem = link_.inertiaProblem();
+  if (status.scale_problem.empty()) status.scale_problem = scale_.problem();
   return status;
 }
 

@@ -50,6 +50,9 @@ class RunPublisher {
   void report(const MappingReport& report);
   void tick();
 
+  // The robot's inertial unit, where there is one, else null; for capture's thread.
+  ImuReceiver* imu() { return publisher_.imu(); }
+
   // Since the start, over all runs; for the thread that starts and ends them.
   PublisherStatus status() const;
   // Of the service; for the thread that starts and ends runs, likewise.

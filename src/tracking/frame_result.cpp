@@ -31,6 +31,7 @@ void clear(FrameResult& result) {
   result.has_pose = false;
   result.position_is_held = false;
   result.world = -1;
+  result.inertia.reset();
   result.world_T_camera = result.reference_T_camera = Pose();
   result.covariance.setZero();
   result.world_covariance.setZero();

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "inertia/inertial_alignment.h"
 #include "map/keyframe.h"
 #include "tracking/stage_times.h"
 
@@ -34,7 +36,8 @@ struct FrameResult {
   bool has_pose = false;
   bool position_is_held = false;  // only the rotation is measured (orientation_only.h)
   int world = -1;                 // that the pose is in: counted from 0, one more where a new map was begun; -1: none
-  Pose world_T_camera;            // map units; measured, or from motion alone where the state says so
+  std::optional<InertialAlignment> inertia;  // how that world lies to the earth, where there is an inertial unit
+  Pose world_T_camera;                       // map units; measured, or from motion alone where the state says so
   // Of the right-hand update [translation; rotation]: of the pose in the map as it is, and of the pose in the world, in
   // which the map itself may have drifted since its first keyframe.
   Matrix6d covariance = Matrix6d::Zero(), world_covariance = Matrix6d::Zero();

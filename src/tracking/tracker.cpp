@@ -349,6 +349,7 @@ void Tracker::tell(Work& work) {
     result.reason.append(std::to_string(frame_.inlier_count)).append(" map points in view agree");
   }
   result.world = last_world_ = view_.world;
+  result.inertia = view_.inertia;
   result.world_covariance = worldCovariance(camera_, withSharedNoise(frame_.covariance), map_covariance_,
                                             frame_.outlier_share, options_.uncertainty);
   tellMotion(frame_.world_T_camera, result);
@@ -396,6 +397,7 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult
   result.state = TrackingState::predicted;
   result.has_pose = true;
   result.world = view_.world;
+  result.inertia = view_.inertia;
   result.world_T_camera = prediction.world_T_camera;
   tellMotion(result.world_T_camera, result);
   result.covariance = prediction.covariance;

@@ -63,6 +63,7 @@ class NoRecorder : public DecisionSink {
  public:
   void tookUpdate(std::int64_t, std::int64_t) noexcept override {}
   void mappingBusy(std::int64_t) noexcept override {}
+  void measured(std::int64_t, const InertialSample&) noexcept override {}
   void appliedCorrection(std::int64_t, std::int64_t) noexcept override {}
   void passedOver(std::int64_t, std::int64_t) noexcept override {}
   void processed(const std::shared_ptr<const FrameImages>& images) noexcept override { last_ = images; }

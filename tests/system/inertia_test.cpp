@@ -77,9 +77,18 @@ TEST_F(Inertia, ThatIsNotThereOrCannotBeUsedIsSaid) {
   const Outcome missing = runProgram({"replay", folder_.path(""), "--imu", "--output", folder_.path("no")});
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_NE(missing.messages.find("imu.csv"), std::string::npos) << missing.messages;
-  const Outcome live = runProgram({"replay", input_, "--imu", "--realtime", "--output", folder_.path("no")});
-  EXPECT_EQ(live.exit_code, 2);
-  EXPECT_NE(live.messages.find("--realtime"), std::string::npos) << live.messages;
+}
+
+TEST_F(Inertia, ARecordingRepeatsTheLiveRunToTheLastByte) {
+  replayedWith("live", {"--imu", "--realtime", "--record", folder_.path("recording")});
+  EXPECT_NE(fileContent(folder_.path("recording/decisions.txt")).find("\ninertia "), std::string::npos);
+  const Outcome repeated =
+      runProgram({"replay", folder_.path("recording"), "--output", folder_.path("repeated"), "--drawings", "0"});
+  ASSERT_EQ(repeated.exit_code, 0) << repeated.messages;
+  for (const char* name : {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "map.ply"}) {
+    EXPECT_TRUE(fileContent(folder_.path("live") + "/" + name) == fileContent(folder_.path("repeated") + "/" + name))
+        << name << "; " << repeated.messages;
+  }
 }
 
 }  // namespace

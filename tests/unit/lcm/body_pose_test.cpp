@@ -50,6 +50,25 @@ TEST(BodyPose, APointOfTheBodyGoesWhereTheCameraCarriesIt) {
   }
 }
 
+TEST(BodyPose, WhereDownIsKnownZPointsUpAndNothingElseChanges) {
+  Random random(7);
+  for (int i = 0; i < 50; ++i) {
+    RobotSetup robot = metricRobot(randomPose(random), random.uniform(0.1, 4));
+    const Pose one = randomPose(random), other = randomPose(random);
+    const Pose between = bodyPose(one, robot).inverse() * bodyPose(other, robot);
+    robot.down = random.vector(1).normalized();
+    EXPECT_LT((worldTurnedUp(robot) * *robot.down + Eigen::Vector3d::UnitZ()).norm(), 1e-9);
+    const Eigen::Vector3d down_in_local = robot.body_T_camera.rotation * *robot.down;
+    EXPECT_LT((localTurnedUp(robot) * down_in_local + Eigen::Vector3d::UnitZ()).norm(), 1e-9);
+    EXPECT_LT(bodyPose(Pose(), robot).translation.norm(), 1e-9) << "the origin stays";
+    expectSame(bodyPose(one, robot).inverse() * bodyPose(other, robot), between, 1e-9);
+    // The camera's pose and the map go together.
+    const Eigen::Vector3f point = random.vector(3).cast<float>();
+    const Eigen::Vector3d in_camera = robot.scale.metres_per_unit * (one.inverse() * point.cast<double>());
+    EXPECT_LT((cameraPose(one, robot) * in_camera - pointInWorld(point, robot).cast<double>()).norm(), 1e-5);
+  }
+}
+
 TEST(BodyPose, WhileTheScaleIsUnknownTheLeverArmIsLeftOut) {
   Random random(3);
   RobotSetup robot;

@@ -45,7 +45,7 @@ TEST(MapMessages, PartsTogetherAreTheMap) {
     const int parts = numberOfPointParts(count);
     std::size_t at = 0;
     for (int part = 0; part < parts; ++part) {
-      const map_part_t message = pointPart(points, part, 9, 77, {ScaleKind::known_distance, 2, 0});
+      const map_part_t message = pointPart(points, part, 9, 77, {Pose(), {ScaleKind::known_distance, 2, 0}});
       expectPart(message, part, parts);
       EXPECT_EQ(message.points_in_map, static_cast<int>(count));
       ASSERT_LE(message.points, map_part_t::MOST_POINTS);
@@ -70,7 +70,7 @@ TEST(MapMessages, PartsTogetherAreTheLines) {
     const int parts = numberOfLineParts(count);
     std::size_t at = 0;
     for (int part = 0; part < parts; ++part) {
-      const map_lines_t message = linePart(lines, part, 9, 77, {ScaleKind::known_distance, 2, 0});
+      const map_lines_t message = linePart(lines, part, 9, 77, {Pose(), {ScaleKind::known_distance, 2, 0}});
       expectPart(message, part, parts);
       EXPECT_EQ(message.lines_in_map, static_cast<int>(count));
       ASSERT_LE(message.lines, map_lines_t::MOST_LINES);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "configuration/configuration.h"
 #include "pipeline/lockstep_run.h"
 #include "unit/library/simulated_robot.h"
@@ -143,6 +145,35 @@ TEST(Slam, WhatCannotBeUsedIsToldWithItsFile) {
   EXPECT_EQ(Slam(calibration, empty).width(), 640);
   Slam slam(calibration, "");
   EXPECT_THROW(slam.goOnWith(empty), InputError);
+}
+
+TEST(Slam, InertiaIsUsedWhereItIsConfiguredAndCanBe) {
+  const SimulatedRobot& robot = simulatedRobot();
+  const std::string unit = "imu_T_camera: {translation: [0, 0, 0], quaternion: [1, 0, 0, 0]}";
+  const auto configured = [&](const std::string& imu) {
+    return robot.folder.write("with_imu.yaml", "include: robot.yaml\nimu: {" + imu + "}\n");
+  };
+  EXPECT_THROW(Slam(configured("enabled: true")), InputError);
+  Slam with(configured("enabled: true, " + unit)), without(configured(unit));
+  InertialMeasurement measured{0, {0, 0, 0}, {0, 0, 9.8}};
+  for (const double bad : {std::nan(""), HUGE_VAL, 1e9}) {
+    measured.rotation_rate[1] = bad;
+    EXPECT_THROW(with.add(measured), InputError) << bad;
+  }
+  // The unit says that the camera turns, which it does not: frames are predicted by it where it is used.
+  measured.rotation_rate[1] = 0.5;
+  bool differs = false;
+  for (int i = 0; i < robot.frame_count; ++i) {
+    const std::int64_t time_ns = robot.sequence.time(i);
+    for (; measured.time_ns < time_ns + 5'000'000; measured.time_ns += 5'000'000) {
+      with.add(measured);
+      without.add(measured);
+    }
+    const PosedFrame one = with.process(robot.image(i), time_ns), other = without.process(robot.image(i), time_ns);
+    EXPECT_FALSE(one.is_metric || other.is_metric) << "what contradicts the camera tells no metres";
+    differs |= one.pose.position != other.pose.position || one.reason != other.reason;
+  }
+  EXPECT_TRUE(differs);
 }
 
 }  // namespace

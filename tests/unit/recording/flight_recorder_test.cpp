@@ -47,5 +47,28 @@ TEST(FlightRecorder, EndedWhileTheRunGoesOnItHasACleanEndAndNoGap) {
   }
 }
 
+TEST(FlightRecorder, WhatAnInertialUnitMeasuredComesBeforeItsFrameInOrder) {
+  const TemporaryFolder folder;
+  FlightRecorder recorder(folder.path("recording"), madeDescription());
+  std::vector<InertiaGiven> given;
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 10 * i; ++k) {
+      given.push_back({i, {madeTime(i) + 1000 * k, {0.001 * k, 0, 0.1 * i}, {0, 0, 9.8}}});
+      recorder.measured(i, given.back().sample);
+    }
+    recorder.processed(imagesOf(i));
+  }
+  EXPECT_EQ(recorder.stop().not_recorded, 0);
+  const Recording recording = readRecording(folder.path("recording"));
+  EXPECT_TRUE(recording.decisions.complete) << recording.decisions.note;
+  ASSERT_EQ(recording.decisions.inertia.size(), given.size());
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    EXPECT_EQ(recording.decisions.inertia[i].frame_index, given[i].frame_index);
+    EXPECT_EQ(recording.decisions.inertia[i].sample.time_ns, given[i].sample.time_ns);
+    EXPECT_EQ(recording.decisions.inertia[i].sample.rate, given[i].sample.rate);
+  }
+  EXPECT_EQ(runDecisions(recording.decisions).inertia.at(3).size(), 30U);
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -22,6 +22,7 @@ TEST(RecordingLayout, EveryKindOfLineIsReadAsItWasWritten) {
                                         {DecisionKind::unreadable, 7, 5, 0, "a: reason, of  words "},
                                         {DecisionKind::unreadable, 7, 5, 0, ""},
                                         {DecisionKind::update, 12, 0, 4, ""},
+                                        {DecisionKind::inertia, 12, 77, 0, "1 2 3 -4e-5 5 9.8"},
                                         {DecisionKind::busy, 8, 0, 0, ""},
                                         {DecisionKind::correction, 9, 0, 2, ""},
                                         {DecisionKind::gap, 0, 0, 17, ""},
@@ -36,6 +37,20 @@ TEST(RecordingLayout, EveryKindOfLineIsReadAsItWasWritten) {
     EXPECT_EQ(read.time_ns, decision.time_ns);
     EXPECT_EQ(read.number, decision.number);
     EXPECT_EQ(read.text, decision.text);
+  }
+}
+
+TEST(RecordingLayout, WhatAnInertialUnitMeasuredKeepsItsLastBit) {
+  const InertialSample sample{1305031102175304123, {0.1 / 3, -1e-300, 99.99}, {1.0 / 7, 9.80665, -0.0}};
+  const Decision read = readLine(formatDecision(inertiaDecision(5, sample)));
+  EXPECT_EQ(read.index, 5);
+  const std::optional<InertialSample> back = inertialSampleOf(read);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->time_ns, sample.time_ns);
+  EXPECT_EQ(back->rate, sample.rate);
+  EXPECT_EQ(back->force, sample.force);
+  for (const char* text : {"", "1 2 3 4 5", "1 2 3 4 5 6 7", "1 2 3 4 5 nan", "1 2 3 4 5 1e9", "1 2 3 4 5 x"}) {
+    EXPECT_FALSE(inertialSampleOf({DecisionKind::inertia, 5, 7, 0, text})) << text;
   }
 }
 

@@ -239,8 +239,10 @@ TEST_F(RecordingSourceTest, AFrameOfAnotherSizeIsAProblem) {
 }
 
 TEST_F(RecordingSourceTest, MissingAndForeignFilesAreTold) {
-  folder_.write("recording/recording.txt", "format 2\nprogram 9\n");
-  expectInputError([&] { readRecording(path_); }, "recording.txt:1", "version 2", "version 1");
+  folder_.write("recording/recording.txt", "format 3\nprogram 9\n");
+  expectInputError([&] { readRecording(path_); }, "recording.txt:1", "version 3", "version 1 to 2");
+  folder_.write("recording/recording.txt", "format 1\nprogram 0.1\n");
+  EXPECT_EQ(readRecording(path_).program_version, "0.1");
   folder_.write("recording/recording.txt", "");
   expectInputError([&] { readRecording(path_); }, "recording.txt", "format");
   folder_.write("recording/recording.txt", "format 1\ncolour blue\n");

@@ -37,6 +37,45 @@ TEST_F(MetricScaleTest, ADistanceSetsItAndAnotherMapForgetsIt) {
   EXPECT_EQ(said(), "edgeslam: " + outcome.message + "\nedgeslam: the scale is unknown again: another map was begun\n");
 }
 
+FrameResult frameWithInertia(int index, double metres_a_unit, const Eigen::Vector3d& down) {
+  FrameResult frame = measuredFrame(index, Pose());
+  frame.inertia = InertialAlignment();
+  frame.inertia->is_known = true;
+  frame.inertia->metres_a_unit = metres_a_unit;
+  frame.inertia->scale_sigma = 0.01;
+  frame.inertia->gravity = standard_gravity * down;
+  return frame;
+}
+
+TEST_F(MetricScaleTest, InertiaTellsItAtOnceAndItMovesSlowlyFromThenOn) {
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  scale.frame(measuredFrame(0, Pose()));
+  scale.inertiaLacks("inertia: the map is too young for its scale");
+  EXPECT_NE(scale.problem().find("too young"), std::string::npos);
+  scale.frame(frameWithInertia(1, 2, Eigen::Vector3d::UnitY()));
+  EXPECT_EQ(publisher_.scale().kind, ScaleKind::inertia);
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 2, 1e-9);
+  ASSERT_TRUE(publisher_.robot().down);
+  EXPECT_EQ(*publisher_.robot().down, Eigen::Vector3d::UnitY());
+  const Eigen::Vector3d a_little_off = Eigen::Vector3d(0.005, 1, 0).normalized();
+  scale.frame(frameWithInertia(2, 2.2, a_little_off));
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 2, 1e-9) << "once a second";
+  EXPECT_EQ(*publisher_.robot().down, Eigen::Vector3d::UnitY()) << "up stays";
+  for (int second = 0; second < 10; ++second) scale.everySecond(second, false);
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 2 * std::exp(10 * GradualScale::largest_step), 1e-3);
+  scale.frame(frameWithInertia(3, 2.2, Eigen::Vector3d(0.1, 1, 0).normalized()));
+  EXPECT_GT(publisher_.robot().down->x(), 0.05) << "but where it was wrong";
+}
+
+TEST_F(MetricScaleTest, InertiaDoesNotMoveWhatWasCommanded) {
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  walkAndSet(scale);
+  scale.frame(frameWithInertia(41, 2, Eigen::Vector3d::UnitY()));
+  scale.everySecond(1, false);
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 0.5, 1e-9);
+  EXPECT_TRUE(publisher_.robot().down);
+}
+
 TEST_F(MetricScaleTest, ADistanceBetweenFramesOfTwoMapsIsRefused) {
   MetricScale scale(options_, Pose(), publisher_, work_, log_);
   scale.frame(measuredFrame(0, Pose()));
@@ -62,14 +101,14 @@ FrameResult frameIn(int world, int index, TrackingState state = TrackingState::t
 TEST_F(MetricScaleTest, EachWorldHasItsOwn) {
   MetricScale scale(options_, Pose(), publisher_, work_, log_);
   walkAndSet(scale);  // in world 0
-  scale.enterWorld(frameIn(1, 41));
+  scale.beforeFrame(frameIn(1, 41));
   EXPECT_FALSE(scale.isKnown());
   EXPECT_EQ(publisher_.scale().kind, ScaleKind::unknown);
   for (int i = 41; i <= 81; ++i) scale.frame(frameIn(1, i));
-  scale.enterWorld(frameIn(0, 82, TrackingState::relocalised));
+  scale.beforeFrame(frameIn(0, 82, TrackingState::relocalised));
   EXPECT_TRUE(scale.isKnown());
   EXPECT_NEAR(publisher_.scale().metres_per_unit, 0.5, 1e-9);
-  scale.enterWorld(frameWithoutPose(83, TrackingState::lost, "dark"));
+  scale.beforeFrame(frameWithoutPose(83, TrackingState::lost, "dark"));
   EXPECT_TRUE(scale.isKnown()) << "no pose, no other world";
 
   Command command;  // of the world that the camera has left
@@ -81,7 +120,7 @@ TEST_F(MetricScaleTest, EachWorldHasItsOwn) {
   EXPECT_TRUE(outcome.accepted);
   EXPECT_NE(outcome.message.find("a map that the camera is not in now"), std::string::npos) << outcome.message;
   EXPECT_NEAR(publisher_.scale().metres_per_unit, 0.5, 1e-9);
-  scale.enterWorld(frameIn(1, 84, TrackingState::relocalised));
+  scale.beforeFrame(frameIn(1, 84, TrackingState::relocalised));
   EXPECT_NEAR(publisher_.scale().metres_per_unit, 3, 1e-9);
 
   command.from_utime = utimeOf(frameIn(0, 0).time_ns);
@@ -94,10 +133,10 @@ TEST_F(MetricScaleTest, WhileTheNextMapIsLookedForItIsUnknown) {
   scale.noMap();
   EXPECT_FALSE(scale.isKnown());
   EXPECT_EQ(publisher_.scale().kind, ScaleKind::unknown);
-  scale.enterWorld(frameIn(0, 50, TrackingState::relocalised));
+  scale.beforeFrame(frameIn(0, 50, TrackingState::relocalised));
   EXPECT_TRUE(scale.isKnown()) << "the map was there all the time";
   scale.noMap();
-  scale.enterWorld(frameIn(0, 60, TrackingState::tracking));
+  scale.beforeFrame(frameIn(0, 60, TrackingState::tracking));
   EXPECT_FALSE(scale.isKnown()) << "another map that began under the same number";
 }
 

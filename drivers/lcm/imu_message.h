@@ -1,0 +1,15 @@
+// What the robot's inertial unit measured, as others publish it: edgeslam.imu_t.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "inertia/inertial_unit.h"
+
+namespace edgeslam {
+
+// None where the bytes are no imu_t, or it is nothing that a unit can have measured (isUsable()), or its time stamp is
+// negative or over 1e15.
+std::optional<InertialSample> checkImu(const void* data, std::size_t bytes);
+
+}  // namespace edgeslam

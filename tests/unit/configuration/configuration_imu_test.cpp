@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include "configuration/configuration.h"
+#include "configuration/configuration_text.h"
+#include "unit/files/temporary_folder.h"
+
+namespace edgeslam {
+namespace {
+
+const std::string pose = "imu_T_camera: {translation: [0.01, -0.02, 0.03], quaternion: [0.5, 0.5, -0.5, 0.5]}";
+
+Configuration configurationOf(const std::string& text) {
+  const TemporaryFolder folder;
+  folder.write("units/known.yaml", pose + "\ngyroscope_noise_density: 0.004\ntime_offset_s: -0.005\n");
+  folder.write("units/bad.yaml", pose + "\ngyroscope_noise_density: -1\n");
+  return readConfiguration(folder.write("file.yaml", text));
+}
+
+void expectRefused(const std::string& text, const std::string& part) {
+  try {
+    settingsWithInertia(configurationOf(text));
+    ADD_FAILURE() << "not refused: " << text;
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+void expectTheKnownUnit(const Configuration& read) {
+  const InertialUnit& unit = read.inertia.unit;
+  EXPECT_TRUE(read.inertia.has_unit);
+  EXPECT_EQ(unit.imu_T_camera.translation, Eigen::Vector3d(0.01, -0.02, 0.03));
+  EXPECT_EQ(unit.imu_T_camera.rotation.coeffs(), Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5).coeffs());
+  EXPECT_EQ(unit.rate_noise, 0.004);
+  EXPECT_EQ(unit.force_noise, InertialUnit().force_noise);
+  EXPECT_EQ(unit.offset_ns, -5'000'000);
+}
+
+TEST(ConfigurationImu, IsNotUsedUnlessAskedFor) {
+  const Configuration read = configurationOf("imu: {" + pose + "}\n");
+  EXPECT_FALSE(read.inertia.is_used);
+  EXPECT_FALSE(settingsWithInertia(read).tracking.inertia);
+  EXPECT_FALSE(settingsWithInertia(configurationOf("")).tracking.inertia);
+}
+
+TEST(ConfigurationImu, ReadsAnInlineUnitAndAFile) {
+  expectTheKnownUnit(configurationOf("imu: {" + pose + ", gyroscope_noise_density: 0.004, time_offset_s: -0.005}\n"));
+  expectTheKnownUnit(configurationOf("imu: {calibration: units/known.yaml, enabled: true}\n"));
+}
+
+TEST(ConfigurationImu, AUsedUnitIsInTheSettings) {
+  const Settings settings =
+      settingsWithInertia(configurationOf("imu: {enabled: true, calibration: units/known.yaml}\n"));
+  ASSERT_TRUE(settings.tracking.inertia);
+  EXPECT_EQ(settings.tracking.inertia->rate_noise, 0.004);
+  EXPECT_TRUE(settings.mapping.local_adjustment.inertia);
+}
+
+TEST(ConfigurationImu, WhatCannotBeIsRefused) {
+  expectRefused("imu: {enabled: true}\n", "imu.imu_T_camera");
+  expectRefused("imu: {calibration: units/none.yaml}\n", "imu.calibration: ");
+  expectRefused("imu: {calibration: units/bad.yaml}\n", "gyroscope_noise_density");
+  expectRefused("imu: {calibration: [1]}\n", "the path of a file");
+  expectRefused("imu: {calibration: units/known.yaml, time_offset_s: 1}\n", "in a file already");
+  expectRefused("imu: {imu_T_camera: [1, 2, 3]}\n", "16 finite numbers");
+  expectRefused("imu: {time_offset_s: 1000}\n", "-10 to 10 s");
+  expectRefused("imu: {channel: SLAM_POSE}\n", "named twice");
+  expectRefused("imu: {channel: \"\"}\n", "imu.channel: a text");
+}
+
+TEST(ConfigurationImu, IsWrittenSoThatItReadsBackToTheLastBit) {
+  Configuration before;
+  before.inertia.is_used = before.inertia.has_unit = true;
+  before.inertia.unit.imu_T_camera = {Eigen::Quaterniond(1, 2, 3, 4).normalized(), {0.1 / 3, 1e-17, -7}};
+  before.inertia.unit.rate_noise = 1e-3 / 7;
+  before.inertia.unit.offset_ns = -123'456'789;
+  const Configuration after = configurationOf(formatConfiguration(before));
+  EXPECT_EQ(after.inertia.unit.imu_T_camera.rotation.coeffs(), before.inertia.unit.imu_T_camera.rotation.coeffs());
+  EXPECT_EQ(after.inertia.unit.imu_T_camera.translation, before.inertia.unit.imu_T_camera.translation);
+  EXPECT_EQ(after.inertia.unit.rate_noise, before.inertia.unit.rate_noise);
+  EXPECT_EQ(after.inertia.unit.offset_ns, before.inertia.unit.offset_ns);
+  EXPECT_TRUE(after.inertia.is_used && after.inertia.has_unit);
+}
+
+}  // namespace
+}  // namespace edgeslam
