@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "line_scene.h"
+#include "unit/map/change_each.h"
 
 namespace edgeslam::test {
 namespace {
@@ -113,13 +114,13 @@ TEST(MotionAlongLines, IsOfConsecutiveKeyframesOnly) {
 
 TEST(MotionAlongLines, IsOfTracksThatStayOnTheirLine) {
   Map map = corridorMap(walk);
-  for (PointObservation& seen : map.keyframes[1].observations) {
+  test::changeEach(map.keyframes[1].observations, [&](PointObservation& seen) {
     if (seen.point == trackOf(0, 0)) seen.straight_edge = 1;
     if (seen.point == trackOf(0, 1)) seen.straight_edge = -1;
-  }
-  for (PointObservation& seen : map.keyframes[2].observations) {
+  });
+  test::changeEach(map.keyframes[2].observations, [&](PointObservation& seen) {
     if (seen.point == trackOf(0, 2)) seen.corner = true;
-  }
+  });
   BundleProblem problem = problemOf(map, 0);
   addMotionAlongLines(camera(), map, linesOf(map), sameIndex, problem);
   EXPECT_EQ(problem.observations.size(), corridor.size() * tracks_on_edge - 3);

@@ -56,7 +56,7 @@ class GuidedMatching : public ::testing::Test {
   PlaceView viewOf(KeyframeId keyframe) const {
     PlaceView view;
     view.keyframe = keyframe;
-    view.images = map_.keyframes[keyframe].images;
+    view.images = map_.keyframes[keyframe].images.get();
     PlacePoint point;
     point.id = point_;
     point.position = map_.keyframes[keyframe].world_T_camera.inverse() * position_;
