@@ -41,13 +41,12 @@ void compareWithMap(const MapView& view, std::vector<Track>& tracks) {
 
 void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages& images, const EdgeMap& edges,
                     const MovingCamera& moving, std::size_t most, const MapReuseOptions& options,
-                    std::vector<Track>& tracks, std::pmr::memory_resource* memory, ReusePart part) {
+                    std::vector<Track>& tracks, std::pmr::memory_resource* memory) {
   if (!options.enabled || tracks.size() >= most) return;
   SearchPoints points(memory);
   points.reserve(view.points.size());
   std::size_t t = 0;
   for (const ViewPoint& point : view.points) {
-    if (point.id % part.count != part.index) continue;
     while (t < tracks.size() && tracks[t].id < point.id) ++t;
     const bool followed = t < tracks.size() && tracks[t].id == point.id;
     if (!followed && point.source >= 0) points.push_back(searchPointOf(view, point));

@@ -18,17 +18,10 @@ struct MapReuseOptions {
   MapSearchOptions search;
 };
 
-// Of the view's points those whose number leaves `index` when divided by `count`.
-struct ReusePart {
-  int count = 1;
-  int index = 0;
-};
-
 // Appends the points found to the tracks, which stay sorted by id; at most until there are `most` tracks.
 void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages& images, const EdgeMap& edges,
                     const MovingCamera& moving, std::size_t most, const MapReuseOptions& options,
-                    std::vector<Track>& tracks, std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
-                    ReusePart part = {});
+                    std::vector<Track>& tracks, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // From now on tracks of points of the view are compared with the patch of the keyframe that they are found again by.
 void compareWithMap(const MapView& view, std::vector<Track>& tracks);
