@@ -22,9 +22,10 @@ Map walkedMap(int keyframes, std::uint64_t seed = 5) {
 }
 
 void forgetObservation(PointId id, Keyframe& keyframe) {
-  auto& seen = keyframe.observations;
+  std::vector<PointObservation> seen(keyframe.observations.begin(), keyframe.observations.end());
   seen.erase(std::remove_if(seen.begin(), seen.end(), [&](const PointObservation& o) { return o.point == id; }),
              seen.end());
+  keyframe.observations = seen;
 }
 
 void renew(Map& map, const MapUncertaintyOptions& options = {}) { renewUncertainty(camera, options, map); }

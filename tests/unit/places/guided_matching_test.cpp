@@ -26,7 +26,7 @@ class GuidedMatching : public ::testing::Test {
     observation.point = point_;
     observation.measurement = measuredFrom(world_T_camera);
     observation.bearing = bearing(camera_, observation.measurement.pixel);
-    keyframe.observations = {observation};
+    keyframe.observations = std::vector<PointObservation>{observation};
     map_.keyframes.push_back(keyframe);
   }
 
