@@ -9,21 +9,15 @@
 #include "geometry/measurement.h"
 #include "geometry/rolling_shutter.h"
 #include "geometry/uncertainty.h"
-#include "image/pyramid.h"
 #include "inertia/preintegration.h"
+#include "map/keyframe_images.h"
 #include "map/map_line.h"
+#include "map/shared_list.h"
 
 namespace edgeslam {
 
 using KeyframeId = int;        // counted from 0; culled ones leave gaps
 using PointId = std::int64_t;  // of a track, and of the map point that it becomes
-
-// The images of a frame; shared, never changed once made.
-struct FrameImages {
-  std::int64_t frame_index = 0;
-  std::int64_t time_ns = 0;
-  ImagePyramid pyramid;
-};
 
 // One track as seen in one frame.
 struct PointObservation {
@@ -78,10 +72,10 @@ struct Keyframe {
   std::int64_t frame_index = 0;
   std::int64_t time_ns = 0;
   Pose world_T_camera;
-  Twist twist = Twist::Zero();                 // of the camera as its rows were read
-  std::vector<PointObservation> observations;  // sorted by point
-  std::vector<SeenEdge> straight_edges;        // that at least three of them lie on
-  std::shared_ptr<const FrameImages> images;   // null for a keyframe that no point is hosted in
+  Twist twist = Twist::Zero();                // of the camera as its rows were read
+  SharedList<PointObservation> observations;  // sorted by point
+  std::vector<SeenEdge> straight_edges;       // that at least three of them lie on
+  KeyframeImages images;                      // null for a keyframe that no point is hosted in
   std::string reason;
   Matrix7d uncertainty = Matrix7d::Zero();  // against the world's first keyframe (mapping/map_uncertainty.h)
   InertialLink inertia;                     // from the keyframe before, of the same world

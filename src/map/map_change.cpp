@@ -64,7 +64,7 @@ void addView(const MapChange::View& view, Map& map) {
   Keyframe* keyframe = map.keyframes.find(view.keyframe);
   const auto point = map.points.find(view.observation.point);
   if (!keyframe || point == map.points.end() || point->second.host == view.keyframe) return;
-  std::vector<PointObservation>& observations = keyframe->observations;
+  SharedList<PointObservation>& observations = keyframe->observations;
   const auto place = std::lower_bound(observations.begin(), observations.end(), view.observation.point,
                                       [](const PointObservation& o, PointId wanted) { return o.point < wanted; });
   if (place == observations.end() || place->point != view.observation.point) {

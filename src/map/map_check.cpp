@@ -94,7 +94,7 @@ std::string keyframeProblem(const Camera& camera, const Keyframe& keyframe) {
     const std::string problem = straightEdgeProblem(camera, edge);
     if (!problem.empty()) return "a straight edge: " + problem;
   }
-  return keyframe.images ? imagesProblem(camera, *keyframe.images) : "";
+  return keyframe.images ? imagesProblem(camera, *keyframe.images.get()) : "";
 }
 
 std::string viewProblem(const Map& map, KeyframeId id, PointId point) {

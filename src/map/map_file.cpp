@@ -113,8 +113,11 @@ void writeKeyframe(ByteWriter& writer, const Keyframe& keyframe) {
   }
   writer.u64(keyframe.straight_edges.size());
   for (const SeenEdge& edge : keyframe.straight_edges) straightEdgeFields(writer, edge);
-  writer(keyframe.images != nullptr);
-  if (keyframe.images) writeImages(writer, *keyframe.images);
+  writer(static_cast<bool>(keyframe.images));
+  if (keyframe.images) {
+    writeImages(writer, *keyframe.images.get());
+    keyframe.images.pack();
+  }
 }
 
 void writePoint(ByteWriter& writer, const MapPoint& point) {
@@ -196,8 +199,9 @@ std::shared_ptr<const FrameImages> readImages(ByteReader& reader, cv::Size size)
 Keyframe readKeyframe(ByteReader& reader, cv::Size size, std::uint32_t version) {
   Keyframe keyframe;
   keyframeFields(reader, keyframe, version);
-  keyframe.observations.resize(reader.count(observation_size));
-  for (PointObservation& observation : keyframe.observations) observationFields(reader, observation, version);
+  std::vector<PointObservation> observations(reader.count(observation_size));
+  for (PointObservation& observation : observations) observationFields(reader, observation, version);
+  keyframe.observations = std::move(observations);
   if (version >= version_with_lines) {
     keyframe.straight_edges.resize(reader.count(straight_edge_size));
     for (SeenEdge& edge : keyframe.straight_edges) straightEdgeFields(reader, edge);

@@ -110,9 +110,7 @@ std::size_t memoryOf(const Map& map) {
   std::size_t bytes = 0;
   for (const Keyframe& keyframe : map.keyframes) {
     bytes += sizeof(Keyframe) + keyframe.observations.capacity() * sizeof(PointObservation) +
-             keyframe.straight_edges.capacity() * sizeof(SeenEdge);
-    if (!keyframe.images) continue;
-    for (const cv::Mat& level : keyframe.images->pyramid.levels) bytes += level.total() * level.elemSize();
+             keyframe.straight_edges.capacity() * sizeof(SeenEdge) + keyframe.images.size();
   }
   constexpr std::size_t node = 4 * sizeof(void*);  // of the ordered map
   for (const auto& [id, point] : map.points) {

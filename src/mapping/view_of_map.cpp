@@ -107,7 +107,7 @@ MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options)
         options.nearest_sources ? nearestSource(map, point, map.keyframes[centre]) : latestSource(map, point);
     writeSource(map, point, source, view_point);
     if (view_point.source >= 0) {
-      view.keyframes[view_point.source].images = map.keyframes[view_point.source].images;
+      view.keyframes[view_point.source].images = map.keyframes[view_point.source].images.get();
     }
     view.points.push_back(view_point);
   }

@@ -45,7 +45,9 @@ Map renumbered(const Map& added, const Offsets& offsets) {
   for (Keyframe keyframe : added.keyframes) {
     keyframe.id += offsets.keyframe;
     keyframe.world += offsets.world;
-    for (PointObservation& observation : keyframe.observations) observation.point += offsets.point;
+    std::vector<PointObservation> observations(keyframe.observations.begin(), keyframe.observations.end());
+    for (PointObservation& observation : observations) observation.point += offsets.point;
+    keyframe.observations = std::move(observations);
     for (SeenEdge& edge : keyframe.straight_edges) edge.line += edge.line >= 0 ? offsets.line : 0;
     map.keyframes.push_back(std::move(keyframe));
   }
@@ -93,9 +95,10 @@ std::vector<Sighting> sightings(const Camera& camera, const Settings& settings, 
   std::vector<Sighting> found;
   for (const Keyframe& keyframe : map.keyframes) {
     if (!keyframe.images) continue;
-    const EdgeMap edges = detectEdges(keyframe.images->pyramid.levels[0], reading.edges, camera.mask.get());
+    const std::shared_ptr<const FrameImages> images = keyframe.images.get();
+    const EdgeMap edges = detectEdges(images->pyramid.levels[0], reading.edges, camera.mask.get());
     const double noise_factor = noiseFactorOf(keyframe, reading.accuracy);
-    RelocalisationResult result = relocalisation.relocalise(other, *keyframe.images, edges, std::nullopt, noise_factor);
+    RelocalisationResult result = relocalisation.relocalise(other, *images, edges, std::nullopt, noise_factor);
     if (!result.found) continue;
     found.push_back({keyframe.id, keyframe.world, other.keyframes[result.keyframe].world, keyframe.world_T_camera,
                      result.world_T_camera, result.evidence.median_distance, std::move(result.matches)});

@@ -24,6 +24,28 @@ void writeDirections(std::vector<MapPointRecord>& records) {
   }
 }
 
+// A point's place among the records, and in its host's image.
+struct HostedPoint {
+  std::size_t record = 0;
+  Eigen::Vector2d pixel;
+};
+
+// Host by host: images that are packed are unpacked once, and one at a time.
+void writeGreys(const Camera& camera, const Keyframe& host, const std::vector<HostedPoint>& points,
+                std::vector<MapPointRecord>& records) {
+  if (!host.images) return;
+  {
+    const std::shared_ptr<const FrameImages> images = host.images.get();
+    const cv::Mat& grey = images->pyramid.levels[0];
+    for (const HostedPoint& point : points) {
+      if (!insideImage(camera, point.pixel, 1)) continue;
+      records[point.record].grey =
+          grey.at<unsigned char>(static_cast<int>(point.pixel.y() + 0.5), static_cast<int>(point.pixel.x() + 0.5));
+    }
+  }
+  host.images.pack();
+}
+
 }  // namespace
 
 std::vector<KeyframeRecord> keyframeRecords(const Map& map, KeyframeId first) {
@@ -48,6 +70,7 @@ std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera
   std::map<ChainKey, std::vector<const MapPoint*>> chains;
   for (const auto& [id, point] : map.points) chains[{point.chain_keyframe, point.chain}].push_back(&point);
   std::vector<MapPointRecord> records;
+  std::map<KeyframeId, std::vector<HostedPoint>> hosted;
   int chain_number = 0;
   for (auto& [key, points] : chains) {
     std::stable_sort(points.begin(), points.end(),
@@ -60,16 +83,12 @@ std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera
       record.chain = chain_number;
       record.order = point->order;
       record.depth_sigma_ratio = static_cast<float>(point->inverse_depth_sigma / point->inverse_depth);
-      const Keyframe& host = map.keyframes[point->host];
-      const Eigen::Vector2d pixel = project(camera, point->host_bearing);
-      if (host.images && insideImage(camera, pixel, 1)) {
-        record.grey = host.images->pyramid.levels[0].at<unsigned char>(static_cast<int>(pixel.y() + 0.5),
-                                                                       static_cast<int>(pixel.x() + 0.5));
-      }
+      hosted[point->host].push_back({records.size(), project(camera, point->host_bearing)});
       records.push_back(record);
     }
     ++chain_number;
   }
+  for (const auto& [host, points] : hosted) writeGreys(camera, map.keyframes[host], points, records);
   writeDirections(records);
   return records;
 }

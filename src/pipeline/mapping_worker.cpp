@@ -3,6 +3,21 @@
 #include "files/format_text.h"
 
 namespace edgeslam {
+namespace {
+
+// The images of keyframes that tracking does not compare with, a few at a time.
+void packImages(const Map& map, const MapView& view) {
+  constexpr int most = 8;
+  int packed = 0;
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (packed == most) return;
+    const ViewKeyframe* shown = view.keyframes.find(keyframe.id);
+    if (shown && shown->images) continue;
+    packed += keyframe.images.pack() ? 1 : 0;
+  }
+}
+
+}  // namespace
 
 // The camera comes to a frozen map's places from anywhere, not from where the latest keyframe was.
 MapperOptions MappingWorker::mapperOptions(const Settings& settings) {
@@ -28,7 +43,9 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
   }
   if (message.frame.kind == FrameKind::elsewhere) {
     mapper_.goBackTo(message.frame.keyframe);
-    return nextUpdate(message.frame.keyframe);
+    MapUpdate update = nextUpdate(message.frame.keyframe);
+    packImages(mapper_.map(), update.view);
+    return update;
   }
   const std::size_t worlds_given_up = mapper_.startsGivenUp();
   const bool was_initialised = mapper_.initialised(), was_metric = mapper_.knownAlignment() != nullptr;
@@ -54,7 +71,9 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
     std::vector<CulledKeyframe> culled = mapper_.takeCulled();
     if (!culled.empty()) report(last_frame_).culled = std::move(culled);
   }
-  return nextUpdate();
+  MapUpdate update = nextUpdate();
+  if (new_keyframe_) packImages(mapper_.map(), update.view);
+  return update;
 }
 
 // The frame's pose is lost: recovery by its tracks (P21), then the map as a whole (P22).

@@ -12,9 +12,20 @@ std::vector<TimedPose> keyframePath(const Map& map, const std::vector<KeyframeId
   return path;
 }
 
+// What was looked at takes little memory again, but for what tracking compares with.
+void packImages(const Map& map) {
+  for (const Keyframe& keyframe : map.keyframes) keyframe.images.pack();
+}
+
 }  // namespace
 
 Correction PlacesWorker::work(const Snapshot& snapshot) {
+  Correction correction = correctionOf(snapshot);
+  packImages(*snapshot.map);
+  return correction;
+}
+
+Correction PlacesWorker::correctionOf(const Snapshot& snapshot) {
   Correction correction;
   correction.number = snapshot.number;
   const Map& before = *snapshot.map;

@@ -27,6 +27,7 @@ class PlacesWorker {
  private:
   enum class Meeting { none, first, longer };
 
+  Correction correctionOf(const Snapshot& snapshot);
   bool closeLoop(Map& map, Correction& correction);
   Meeting meetOldPart(const Map& map);
   bool globalAdjustmentDue(const Map& map) const;

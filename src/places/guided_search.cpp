@@ -58,8 +58,8 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
   MapSearchOptions search = options.search;
   search.radius = round.radius;
   search.coarsest_level = round.coarsest_level;
-  std::vector<KeyframeId> keyframes;
-  const SearchPoints points = searchPoints(map, ids, start, keyframes);
+  std::vector<PatchSource> sources;
+  const SearchPoints points = searchPoints(map, ids, start, sources);
   const VisiblePoints visible = thinOut(points, visiblePoints(camera, points, start, search), round.most_points);
 
   RoundResult result;
@@ -77,7 +77,7 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
       measurement.sigma_normal = sigmaAcross(/*corner=*/false, frame.accuracy);
       measurement.sigma_tangent = std::max<double>(seen.sigma_tangent, point.sigma_tangent);
     }
-    result.matches.push_back({point.id, measurement, point.corner, keyframes[found.index]});
+    result.matches.push_back({point.id, measurement, point.corner, sources[found.index].keyframe});
     result.distances.push_back((point.position - start.translation).norm());
     measurement.sigma_normal *= round.widening;
     measurement.sigma_tangent *= round.widening;
@@ -169,9 +169,9 @@ std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neigh
 }
 
 SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
-                          std::vector<KeyframeId>& keyframes) {
+                          std::vector<PatchSource>& sources) {
   SearchPoints result;
-  keyframes.clear();
+  sources.clear();
   for (const PointId id : points) {
     const MapPoint& point = map.points.at(id);
     const Eigen::Vector3d position = worldPosition(map, point);
@@ -192,10 +192,10 @@ SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, co
     const PointObservation* seen = nearest ? findObservation(*nearest, id) : nullptr;
     if (!seen) continue;
     const Measurement& m = seen->measurement;
-    result.push_back({id, position, nearest->images.get(), nearest->world_T_camera, m.pixel.cast<float>(),
+    sources.push_back({nearest->id, nearest->images.get()});
+    result.push_back({id, position, sources.back().images.get(), nearest->world_T_camera, m.pixel.cast<float>(),
                       m.normal.cast<float>(), seen->corner, static_cast<float>(m.sigma_normal),
                       static_cast<float>(m.sigma_tangent), nearest->twist});
-    keyframes.push_back(nearest->id);
   }
   return result;
 }
@@ -234,9 +234,9 @@ GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std:
   evidence.cells = cellsCovered(camera, result.inliers);
   evidence.median_distance = upperMedian(distances);
   evidence.position_sigma = largestSigma(last.pose.covariance.topLeftCorner<3, 3>()) / evidence.median_distance;
-  std::vector<KeyframeId> keyframes;
+  std::vector<PatchSource> sources;
   const Pose& pose = last.pose.world_T_camera;
-  const SearchPoints around = searchPoints(map, points, pose, keyframes);
+  const SearchPoints around = searchPoints(map, points, pose, sources);
   evidence.explained =
       explainedShare(frame.edges, visiblePoints(camera, around, pose, options.search), options.explained_edges);
   evidence.rotation_sigma_deg = degrees(largestSigma(last.pose.covariance.bottomRightCorner<3, 3>()));

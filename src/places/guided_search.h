@@ -71,10 +71,16 @@ struct GuidedSearchResult {
 // The map points that a keyframe and its best covisible ones see, ascending.
 std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neighbours);
 
-// The points with, of each, the keyframe that saw it most nearly from where `world_T_camera` does. `keyframes` gets
-// these, one a point.
+// Where a point's patch is from.
+struct PatchSource {
+  KeyframeId keyframe = -1;
+  std::shared_ptr<const FrameImages> images;
+};
+
+// The points with, of each, the keyframe that saw it most nearly from where `world_T_camera` does. `sources` gets
+// these, one a point; the points are good for as long as it is.
 SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
-                          std::vector<KeyframeId>& keyframes);
+                          std::vector<PatchSource>& sources);
 
 // A frame in which map points are searched for.
 struct SearchedFrame {

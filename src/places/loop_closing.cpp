@@ -132,7 +132,8 @@ void LoopClosing::describeNew(const Map& map) {
     Known known;
     known.frame_index = keyframe.frame_index;
     if (keyframe.images) {
-      const cv::Mat& grey = keyframe.images->pyramid.levels[0];
+      const std::shared_ptr<const FrameImages> images = keyframe.images.get();
+      const cv::Mat& grey = images->pyramid.levels[0];
       const CameraMask* mask = camera_.mask.get();
       known.signature = edgeSignature(grey, detectEdges(grey, reading_.edges, mask), mask);
     }

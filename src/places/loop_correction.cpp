@@ -63,6 +63,7 @@ PointObservation observationOf(const Camera& camera, PointId point, bool corner,
 void observeInNeighbour(const Camera& camera, const Map& map, const PlaceView& old_side, const Pose& neighbour_T_old,
                         const Keyframe& neighbour, const LoopVerification& loop, double largest_move,
                         const GuidedMatchingOptions& guided, std::vector<LoopCorrection::Observation>& observations) {
+  const std::shared_ptr<const FrameImages> images = neighbour.images.get();
   std::vector<PointId> found_before;
   for (const auto& found : loop.found) found_before.push_back(found.candidate_point);
   std::sort(found_before.begin(), found_before.end());
@@ -73,8 +74,7 @@ void observeInNeighbour(const Camera& camera, const Map& map, const PlaceView& o
     Measurement measured;
     if (!predictMeasurement(camera, neighbour_T_old, point.position, point.measurement, measured)) continue;
     if (!isLookedAt(camera, measured.pixel, 8)) continue;
-    if (!findByPatch(camera, map, old_side, point, neighbour_T_old, *neighbour.images, largest_move, guided,
-                     measured)) {
+    if (!findByPatch(camera, map, old_side, point, neighbour_T_old, *images, largest_move, guided, measured)) {
       continue;
     }
     observations.push_back({neighbour.id, observationOf(camera, point.id, point.corner, measured)});

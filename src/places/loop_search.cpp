@@ -99,10 +99,11 @@ std::vector<Pose> LoopSearch::starts(KeyframeId keyframe, const std::optional<Si
 std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector<Pose>& starts,
                                           std::string& reason) const {
   const Keyframe& here = map_.keyframes[keyframe];
-  const cv::Mat& grey = here.images->pyramid.levels[0];
+  const std::shared_ptr<const FrameImages> images = here.images.get();
+  const cv::Mat& grey = images->pyramid.levels[0];
   const CameraMask* mask = camera_.mask.get();
   const EdgeMap edges = detectEdges(grey, reading_.edges, mask);
-  SearchedFrame frame{*here.images, edges, accuracyIn(grey, reading_.accuracy, mask)};
+  SearchedFrame frame{*images, edges, accuracyIn(grey, reading_.accuracy, mask)};
   frame.accuracy.noise_factor = noiseFactorOf(here, reading_.accuracy);
   std::vector<ScreenedPose> screened;
   for (const Pose& start : starts) {

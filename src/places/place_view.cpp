@@ -63,7 +63,7 @@ PlaceView placeView(const Camera& camera, const Map& map, KeyframeId keyframe, i
   PlaceView view;
   const Keyframe& centre = keyframeOf(map, keyframe);
   view.keyframe = keyframe;
-  view.images = centre.images;
+  view.images = centre.images.get();
   const Pose camera_T_world = centre.world_T_camera.inverse();
   PointSpacing spacing(cv::Size(camera.width, camera.height), least_spacing);
   std::set<PointId> taken;

@@ -41,7 +41,8 @@ Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double secon
 
 void Relocalisation::addKeyframe(const Keyframe& keyframe) {
   if (!keyframe.images) return;
-  const ImagePyramid& pyramid = keyframe.images->pyramid;
+  const std::shared_ptr<const FrameImages> images = keyframe.images.get();
+  const ImagePyramid& pyramid = images->pyramid;
   std::vector<const PointObservation*> chosen;
   for (const PointObservation& observation : keyframe.observations) chosen.push_back(&observation);
   std::stable_partition(chosen.begin(), chosen.end(), [](const PointObservation* o) { return o->corner; });

@@ -84,8 +84,8 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       keyframes_(camera, options.keyframes, points),
       inertia_(options.inertia),
       noise_(options.noise),
-      scratch_memory_(scratch_size),
-      scratch_(scratch_memory_.data(), scratch_memory_.size()),
+      scratch_memory_(new std::byte[scratch_size]),
+      scratch_(scratch_memory_.get(), scratch_size),
       spare_(most_tracks_) {
   for (FollowedFrame* frame : {&frame_, &last_, &kept_}) {
     frame->tracks.reserve(most_found_again);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <memory_resource>
 #include <optional>
 #include <string>
@@ -163,7 +164,7 @@ class Tracker {
   MotionModel motion_;
   InertialMotion inertia_;
   MeasuredNoise noise_;
-  std::vector<std::byte> scratch_memory_;
+  std::unique_ptr<std::byte[]> scratch_memory_;  // as much of it takes room as was ever used
   std::pmr::monotonic_buffer_resource scratch_;  // what one frame needs on the way
 
   MapView view_;

@@ -72,8 +72,9 @@ inline SavedMap madeMap(int width, int height) {
     keyframe.reason = id == 0 ? "" : "rotation by 12 deg";
     for (const PointId point : {PointId{2}, PointId{3}, PointId{5}, large}) {
       if (id == 9 && point == 3) continue;
-      keyframe.observations.push_back(madeObservation(point, id, width, height));
-      keyframe.observations.back().straight_edge = id == 4 && point == 3 ? 1 : -1;
+      PointObservation observation = madeObservation(point, id, width, height);
+      observation.straight_edge = id == 4 && point == 3 ? 1 : -1;
+      keyframe.observations.push_back(observation);
     }
     if (id == 0 || id == 4) keyframe.straight_edges.push_back(madeEdge(3, width, height));
     if (id == 4) keyframe.straight_edges.push_back(madeEdge(8, width, height));

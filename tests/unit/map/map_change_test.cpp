@@ -106,7 +106,7 @@ Map adjusted(const Map& before) {
   for (const PointId id : {PointId{4}, PointId{15}, PointId{16}}) after.points.erase(id);
   // Point 35 found in keyframe 1, which had not seen it.
   after.points.at(35).seen_in.insert(after.points.at(35).seen_in.begin(), 1);
-  std::vector<PointObservation>& observations = after.keyframes[1].observations;
+  SharedList<PointObservation>& observations = after.keyframes[1].observations;
   observations.insert(std::lower_bound(observations.begin(), observations.end(), PointId{35},
                                        [](const PointObservation& o, PointId wanted) { return o.point < wanted; }),
                       observationOf(35, poseOf(1), landmark(35)));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "edgeslam/input_error.h"
+#include "unit/map/change_each.h"
 #include "unit/map/made_map.h"
 
 namespace edgeslam {
@@ -43,8 +44,15 @@ void expectRefused(const std::vector<Change>& changes) {
 }
 
 MapPoint& pointOf(SavedMap& saved, PointId id) { return saved.map.points.at(id); }
-Measurement& measured(SavedMap& saved) { return test::keyframeOf(saved, 4).observations[1].measurement; }
-PointObservation& observed(SavedMap& saved) { return test::keyframeOf(saved, 4).observations[1]; }
+
+// Changes what keyframe 4 saw of its second point.
+template <typename Change>
+void changeObservation(SavedMap& saved, const Change& change) {
+  int place = 0;
+  test::changeEach(test::keyframeOf(saved, 4).observations, [&](PointObservation& seen) {
+    if (place++ == 1) change(seen);
+  });
+}
 
 TEST(MapCheck, AMadeMapKeepsToTheRules) {
   const SavedMap saved = test::madeMap(32, 24);
@@ -102,21 +110,39 @@ TEST(MapCheck, Keyframes) {
 TEST(MapCheck, Observations) {
   const char* const where = "keyframe 4: observation of point 3: ";
   expectRefused({
-      {"keyframe 4: observation of point 2: ", "comes after", [](SavedMap& s) { observed(s).point = 2; }},
-      {"keyframe 4: observation of point -7: ", "no such", [](SavedMap& s) { observed(s).point = -7; }},
-      {"keyframe 4: observation of point 5: ", "comes after", [](SavedMap& s) { observed(s).point = 6; }},
-      {where, "pixel", [](SavedMap& s) { measured(s).pixel.x() = not_a_number; }},
-      {where, "pixel", [](SavedMap& s) { measured(s).pixel.x() = -pyramid_border - 1; }},
-      {where, "pixel", [](SavedMap& s) { measured(s).pixel.y() = 24 + pyramid_border; }},
-      {where, "normal", [](SavedMap& s) { measured(s).normal *= 0; }},
-      {where, "normal", [](SavedMap& s) { measured(s).normal.y() = not_a_number; }},
-      {where, "deviations", [](SavedMap& s) { measured(s).sigma_normal = 0; }},
-      {where, "deviations", [](SavedMap& s) { measured(s).sigma_tangent = -1; }},
-      {where, "deviations", [](SavedMap& s) { measured(s).sigma_tangent = not_a_number; }},
-      {where, "bearing", [](SavedMap& s) { observed(s).bearing *= 2; }},
-      {where, "bearing", [](SavedMap& s) { observed(s).bearing.z() = infinity; }},
-      {where, "place on an edge", [](SavedMap& s) { observed(s).chain = -2; }},
-      {where, "place on an edge", [](SavedMap& s) { observed(s).order = -1; }},
+      {"keyframe 4: observation of point 2: ", "comes after",
+       [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.point = 2; }); }},
+      {"keyframe 4: observation of point -7: ", "no such",
+       [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.point = -7; }); }},
+      {"keyframe 4: observation of point 5: ", "comes after",
+       [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.point = 6; }); }},
+      {where, "pixel",
+       [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.measurement.pixel.x() = not_a_number; }); }},
+      {where, "pixel",
+       [](SavedMap& s) {
+         changeObservation(s, [](PointObservation& o) { o.measurement.pixel.x() = -pyramid_border - 1; });
+       }},
+      {where, "pixel",
+       [](SavedMap& s) {
+         changeObservation(s, [](PointObservation& o) { o.measurement.pixel.y() = 24 + pyramid_border; });
+       }},
+      {where, "normal",
+       [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.measurement.normal *= 0; }); }},
+      {where, "normal",
+       [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.measurement.normal.y() = not_a_number; }); }},
+      {where, "deviations",
+       [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.measurement.sigma_normal = 0; }); }},
+      {where, "deviations",
+       [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.measurement.sigma_tangent = -1; }); }},
+      {where, "deviations",
+       [](SavedMap& s) {
+         changeObservation(s, [](PointObservation& o) { o.measurement.sigma_tangent = not_a_number; });
+       }},
+      {where, "bearing", [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.bearing *= 2; }); }},
+      {where, "bearing",
+       [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.bearing.z() = infinity; }); }},
+      {where, "place on an edge", [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.chain = -2; }); }},
+      {where, "place on an edge", [](SavedMap& s) { changeObservation(s, [](PointObservation& o) { o.order = -1; }); }},
   });
 }
 
@@ -167,8 +193,10 @@ TEST(MapCheck, PointsAreSeenFromKeyframesThatAreThereAndSawThem) {
       {where, "seen in keyframe 4, which has no",
        [](SavedMap& s) {
          pointOf(s, 5).host = 1;
-         auto& o = test::keyframeOf(s, 4).observations;
-         o.erase(o.begin() + 2);
+         auto& seen = test::keyframeOf(s, 4).observations;
+         std::vector<PointObservation> others(seen.begin(), seen.end());
+         others.erase(others.begin() + 2);
+         seen = others;
          pointOf(s, 5).seen_in = {0, 4};
        }},
   });
@@ -195,8 +223,10 @@ TEST(MapCheck, StraightEdgesAndLinesKeepToTheRules) {
   const auto edge = [](SavedMap& saved) -> SeenEdge& { return test::keyframeOf(saved, 4).straight_edges[0]; };
   const auto line = [](SavedMap& saved) -> MapLine& { return saved.map.lines.at(3); };
   expectRefused({
-      {"keyframe 4", "straight edge is not there", [](SavedMap& saved) { observed(saved).straight_edge = 2; }},
-      {"keyframe 4", "straight edge is not there", [](SavedMap& saved) { observed(saved).straight_edge = -2; }},
+      {"keyframe 4", "straight edge is not there",
+       [](SavedMap& saved) { changeObservation(saved, [](PointObservation& o) { o.straight_edge = 2; }); }},
+      {"keyframe 4", "straight edge is not there",
+       [](SavedMap& saved) { changeObservation(saved, [](PointObservation& o) { o.straight_edge = -2; }); }},
       {"keyframe 4", "there is no such line", [&](SavedMap& saved) { edge(saved).line = -2; }},
       {"keyframe 4", "line 5 is not in the map", [&](SavedMap& saved) { edge(saved).line = 5; }},
       {"keyframe 4", "end is not in the image", [&](SavedMap& saved) { edge(saved).to.pixel.x() = not_a_number; }},

@@ -128,7 +128,7 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
   keyframe.world_T_camera = {Eigen::Quaterniond(14, 15, 16, 17), {18, 19, 20}};
   keyframe.twist << 32, 33, 34, 35, 36, 37;
   keyframe.reason = "turn";
-  keyframe.observations = {observation};
+  keyframe.observations = std::vector<PointObservation>{observation};
   keyframe.straight_edges = {{39, {{40, 41}, {42, 43, 44}}, {{45, 46}, {47, 48, 49}}, 50}};
   MapPoint point{5, 21, {22, 23, 24}, 25, 26, false, 27, 28, 29, {30, 31}};
   SavedMap saved;

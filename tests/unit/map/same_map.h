@@ -80,8 +80,8 @@ inline void expectSameKeyframe(const Keyframe& expected, const Keyframe& found) 
   for (std::size_t i = 0; i < expected.straight_edges.size(); ++i) {
     expectSameEdge(expected.straight_edges[i], found.straight_edges[i]);
   }
-  ASSERT_EQ(found.images != nullptr, expected.images != nullptr);
-  if (expected.images) expectSameImages(*expected.images, *found.images);
+  ASSERT_EQ(static_cast<bool>(found.images), static_cast<bool>(expected.images));
+  if (expected.images) expectSameImages(*expected.images.get(), *found.images.get());
 }
 
 inline void expectSamePoint(const MapPoint& expected, const MapPoint& found) {

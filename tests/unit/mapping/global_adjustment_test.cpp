@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "unit/adjustment/synthetic_scene.h"
+#include "unit/map/change_each.h"
 
 namespace edgeslam {
 namespace {
@@ -101,9 +102,9 @@ TEST(GlobalAdjustment, OutliersAreTakenOut) {
   Map map = makeMap(camera, 8, 150, 4);
   const PointId wrong = map.points.begin()->first;
   const KeyframeId keyframe = map.points.at(wrong).seen_in.back();
-  for (PointObservation& observation : map.keyframes[keyframe].observations) {
+  test::changeEach(map.keyframes[keyframe].observations, [&](PointObservation& observation) {
     if (observation.point == wrong) observation.measurement.pixel += 40 * observation.measurement.normal;
-  }
+  });
   ASSERT_TRUE(adjustGlobally(camera, {}, {}, map));
   const auto point = map.points.find(wrong);
   if (point != map.points.end()) {

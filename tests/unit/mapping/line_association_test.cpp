@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "line_scene.h"
+#include "unit/map/change_each.h"
 
 namespace edgeslam::test {
 namespace {
@@ -33,7 +34,7 @@ Map mapWithNewKeyframe() {
 }
 
 void renumberTracks(Keyframe& keyframe) {
-  for (PointObservation& seen : keyframe.observations) seen.point += 100000;
+  test::changeEach(keyframe.observations, [&](PointObservation& seen) { seen.point += 100000; });
 }
 
 std::vector<LineId> linesSeenBy(const Keyframe& keyframe) {
@@ -72,14 +73,14 @@ TEST(LineAssociation, NeedsThreeTracksAndHalfOfThem) {
   for (auto& [id, line] : map.lines) line.is_placed = false;
   Keyframe& keyframe = map.keyframes[2];
   int kept_of_first = 0, moved_to_third = 0;
-  for (PointObservation& seen : keyframe.observations) {
+  test::changeEach(keyframe.observations, [&](PointObservation& seen) {
     // Two tracks of the first panel are left; the third has its six and, as if they had strayed, six of the fourth.
     if (seen.point / 100 == 0 && ++kept_of_first > 2) seen.point += 100000;
     if (seen.point / 100 == 3) {
       seen.straight_edge = 2;
       ++moved_to_third;
     }
-  }
+  });
   ASSERT_EQ(moved_to_third, tracks_on_edge);
   associateLines(camera(), {}, 2, map);
   EXPECT_EQ(linesSeenBy(keyframe), (std::vector<LineId>{4, 1, 2, 5}));

@@ -7,6 +7,7 @@
 #include "geometry/angles.h"
 #include "line_scene.h"
 #include "mapping/local_adjustment.h"
+#include "unit/map/change_each.h"
 
 namespace edgeslam::test {
 namespace {
@@ -79,9 +80,9 @@ TEST(LineBundle, PointsOnLinesAreThoseThatMostKeyframesSeeThere) {
 
   map.points.at(trackOf(0, 0)).corner = true;
   for (const KeyframeId keyframe : {1, 2, 3}) {  // three of five see it elsewhere
-    for (PointObservation& seen : map.keyframes[keyframe].observations) {
+    test::changeEach(map.keyframes[keyframe].observations, [&](PointObservation& seen) {
       if (seen.point == trackOf(0, 1)) seen.straight_edge = 2;
-    }
+    });
   }
   map.lines.at(3).is_placed = false;
   const std::map<PointId, LineId> fewer = pointsOnLines(map, all);

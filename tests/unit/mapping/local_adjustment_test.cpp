@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/map/change_each.h"
 #include "unit/mapping/edge_scene.h"
 
 namespace edgeslam {
@@ -128,9 +129,10 @@ TEST(LocalAdjustment, TakesOutliersOutAndKeepsTheRest) {
   for (auto& [id, point] : synthetic.map.points) {
     if (id % 12 != 0 || point.seen_in.size() < 3) continue;
     Keyframe& keyframe = synthetic.map.keyframes[static_cast<std::size_t>(point.seen_in.back())];
-    const auto seen = static_cast<std::size_t>(findObservation(keyframe, id) - keyframe.observations.data());
-    Measurement& m = keyframe.observations[seen].measurement;
-    m.pixel += 15 * m.normal;
+    test::changeEach(keyframe.observations, [seen = id](PointObservation& observation) {
+      Measurement& m = observation.measurement;
+      if (observation.point == seen) m.pixel += 15 * m.normal;
+    });
     wrong.emplace_back(id, keyframe.id);
   }
   ASSERT_GT(wrong.size(), 10U);
@@ -161,10 +163,11 @@ TEST(LocalAdjustment, LeavesADistantPartOfTheMapAlone) {
   SyntheticMap synthetic(5, {0.5, 0.5});
   const PointId half = static_cast<PointId>(synthetic.scene.points.size() / 2);
   for (Keyframe& keyframe : synthetic.map.keyframes) {
-    auto& seen = keyframe.observations;
+    std::vector<PointObservation> seen(keyframe.observations.begin(), keyframe.observations.end());
     seen.erase(std::remove_if(seen.begin(), seen.end(),
                               [&](const PointObservation& o) { return (o.point < half) != (keyframe.id < 2); }),
                seen.end());
+    keyframe.observations = seen;
   }
   synthetic.map.points.clear();
   test::addAllPoints(synthetic.scene, synthetic.map);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/map/change_each.h"
 #include "unit/mapping/edge_scene.h"
 
 namespace edgeslam {
@@ -116,9 +117,10 @@ TEST(NewPoints, ViewsThatContradictEachOtherGiveNoDepth) {
   const std::vector<Pose> poses{sideways(0), sideways(0.15), sideways(0.3)};
   EXPECT_EQ(pointOf(upright).add(poses, options), 1);
   const auto spoil = [](Map& map) {
-    PointObservation& seen = map.keyframes[1].observations[0];
-    seen.measurement.pixel.x() += 6;  // twelve of its standard deviations
-    seen.bearing = bearing(camera, seen.measurement.pixel);
+    test::changeEach(map.keyframes[1].observations, [](PointObservation& seen) {
+      seen.measurement.pixel.x() += 6;  // twelve of its standard deviations
+      seen.bearing = bearing(camera, seen.measurement.pixel);
+    });
   };
   EXPECT_EQ(pointOf(upright).add(poses, options, Sight(), spoil), 0);
 }
@@ -131,9 +133,10 @@ TEST(NewPoints, ACornerOffTheCrossingOfItsEpipolarLinesIsRefused) {
   const std::vector<Pose> poses{sideways(0), {Eigen::Quaterniond::Identity(), {0.15, 0.1, 0}}, sideways(0.3)};
   EXPECT_EQ(pointOf(upright, true).add(poses, options), 1);
   const auto spoil = [](Map& map) {
-    PointObservation& seen = map.keyframes[1].observations[0];
-    seen.measurement.pixel += Eigen::Vector2d(2, 2);
-    seen.bearing = bearing(camera, seen.measurement.pixel);
+    test::changeEach(map.keyframes[1].observations, [](PointObservation& seen) {
+      seen.measurement.pixel += Eigen::Vector2d(2, 2);
+      seen.bearing = bearing(camera, seen.measurement.pixel);
+    });
   };
   EXPECT_EQ(pointOf(upright, true).add(poses, options, Sight(), spoil), 0);
   EXPECT_EQ(pointOf(upright, false).add(poses, options, Sight(), spoil), 1) << "an edge point may have slid";
@@ -165,9 +168,10 @@ TEST(NewPoints, TheSigmaThatIsKeptIsHonest) {
     sight.noise = 1;
     Map keyframes = test::keyframesOf(camera, one.scene, {sideways(0), sideways(0.3)}, sight, random);
     // The host bearing counts as exact.
-    PointObservation& host = keyframes.keyframes[0].observations[0];
-    host.measurement.pixel = project(camera, one.scene.points[0].position);
-    host.bearing = one.scene.points[0].position.normalized();
+    test::changeEach(keyframes.keyframes[0].observations, [&](PointObservation& host) {
+      host.measurement.pixel = project(camera, one.scene.points[0].position);
+      host.bearing = one.scene.points[0].position.normalized();
+    });
     if (mapAll(keyframes, NewPointOptions(), one.map, one.candidates) == 0) continue;
     const MapPoint& point = one.map.points.at(0);
     const double error = point.inverse_depth - 1 / one.scene.points[0].position.norm();

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mapping/map_uncertainty.h"
+#include "unit/map/change_each.h"
 #include "unit/mapping/landmark_walk.h"
 
 namespace edgeslam {
@@ -21,9 +22,10 @@ Map walkedMap(int keyframes, std::uint64_t seed = 5) {
 }
 
 void forgetObservation(PointId id, Keyframe& keyframe) {
-  auto& seen = keyframe.observations;
+  std::vector<PointObservation> seen(keyframe.observations.begin(), keyframe.observations.end());
   seen.erase(std::remove_if(seen.begin(), seen.end(), [&](const PointObservation& o) { return o.point == id; }),
              seen.end());
+  keyframe.observations = seen;
 }
 
 void renew(Map& map, const MapUncertaintyOptions& options = {}) { renewUncertainty(camera, options, map); }
@@ -119,10 +121,10 @@ TEST(UncertaintyLinks, GrowWithTheDoubtOfDepthsAndOfMeasurements) {
   Map unsure_depth = sure, unsure_pixels = sure;
   for (auto& [id, point] : unsure_depth.points) point.inverse_depth_sigma *= 3;
   for (Keyframe& keyframe : unsure_pixels.keyframes) {
-    for (PointObservation& seen : keyframe.observations) {
+    test::changeEach(keyframe.observations, [&](PointObservation& seen) {
       seen.measurement.sigma_normal *= 3;
       seen.measurement.sigma_tangent *= 3;
-    }
+    });
   }
   for (Map* map : {&sure, &unsure_depth, &unsure_pixels}) renew(*map, options);
   const Matrix7d &known = sure.keyframes[1].uncertainty, &by_depth = unsure_depth.keyframes[1].uncertainty,

@@ -26,7 +26,7 @@ class GuidedMatching : public ::testing::Test {
     observation.point = point_;
     observation.measurement = measuredFrom(world_T_camera);
     observation.bearing = bearing(camera_, observation.measurement.pixel);
-    keyframe.observations = {observation};
+    keyframe.observations = std::vector<PointObservation>{observation};
     map_.keyframes.push_back(keyframe);
   }
 
@@ -56,7 +56,7 @@ class GuidedMatching : public ::testing::Test {
   PlaceView viewOf(KeyframeId keyframe) const {
     PlaceView view;
     view.keyframe = keyframe;
-    view.images = map_.keyframes[keyframe].images;
+    view.images = map_.keyframes[keyframe].images.get();
     PlacePoint point;
     point.id = point_;
     point.position = map_.keyframes[keyframe].world_T_camera.inverse() * position_;

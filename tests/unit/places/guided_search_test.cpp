@@ -213,15 +213,15 @@ TEST(GuidedSearch, AnotherRoomGivesNoPoseThatIsAccepted) {
 // Of the keyframes that saw a point, the one that saw it most nearly from here.
 TEST(GuidedSearch, SearchesByThePatchOfTheNearestKeyframe) {
   for (const KeyframeId near : {0, 1, 2}) {
-    std::vector<KeyframeId> keyframes;
+    std::vector<PatchSource> sources;
     const Pose& pose = room().map.keyframes[near].world_T_camera;
-    const SearchPoints points = searchPoints(room().map, room().points, pose, keyframes);
-    ASSERT_EQ(points.size(), keyframes.size());
+    const SearchPoints points = searchPoints(room().map, room().points, pose, sources);
+    ASSERT_EQ(points.size(), sources.size());
     ASSERT_GT(points.size(), 100U);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const bool seen_there = findObservation(room().map.keyframes[near], points[i].id) != nullptr;
-      EXPECT_EQ(keyframes[i] == near, seen_there) << points[i].id;
-      const PointObservation* seen = findObservation(room().map.keyframes[keyframes[i]], points[i].id);
+      EXPECT_EQ(sources[i].keyframe == near, seen_there) << points[i].id;
+      const PointObservation* seen = findObservation(room().map.keyframes[sources[i].keyframe], points[i].id);
       ASSERT_NE(seen, nullptr);
       EXPECT_EQ(points[i].source_pixel, Eigen::Vector2f(seen->measurement.pixel.cast<float>()));
     }

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "unit/map/change_each.h"
 #include "unit/places/made_place.h"
 
 namespace edgeslam::test {
@@ -79,7 +80,7 @@ TEST(LoopSearch, ARoomThatLooksAlikeIsRefused) {
   constexpr PointId offset = 1000000;
   for (Keyframe keyframe : other.keyframes) {
     keyframe.id += first;
-    for (PointObservation& observation : keyframe.observations) observation.point += offset;
+    test::changeEach(keyframe.observations, [&](PointObservation& observation) { observation.point += offset; });
     map.keyframes.push_back(keyframe);
   }
   for (auto [id, point] : other.points) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/map/change_each.h"
 #include "unit/places/made_place.h"
 
 namespace edgeslam {
@@ -66,7 +67,7 @@ TEST_F(LoopVerificationTest, AnotherRoomIsRefused) {
   const auto first = static_cast<KeyframeId>(map.keyframes.size());
   for (Keyframe keyframe : other.keyframes) {
     keyframe.id += first;
-    for (PointObservation& observation : keyframe.observations) observation.point += 1000000;
+    test::changeEach(keyframe.observations, [&](PointObservation& observation) { observation.point += 1000000; });
     map.keyframes.push_back(keyframe);
   }
   for (auto [id, point] : other.points) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/map/change_each.h"
 #include "unit/places/made_place.h"
 
 namespace edgeslam::test {
@@ -169,7 +170,7 @@ Map twice(const Map& map) {
   for (Keyframe keyframe : map.keyframes) {
     keyframe.id += count;
     keyframe.world_T_camera.translation += Eigen::Vector3d(10, 0, 0);
-    for (PointObservation& observation : keyframe.observations) observation.point += offset;
+    test::changeEach(keyframe.observations, [&](PointObservation& observation) { observation.point += offset; });
     both.keyframes.push_back(std::move(keyframe));
   }
   for (auto [id, point] : map.points) {
