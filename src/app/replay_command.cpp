@@ -20,6 +20,7 @@
 #include "configuration/input_configuration.h"
 #include "files/format_text.h"
 #include "frames/frame_problem.h"
+#include "frames/wheel_file.h"
 #include "map/saved_map.h"
 #include "pipeline/lockstep_run.h"
 #include "recording/open_frame_source.h"
@@ -27,6 +28,7 @@
 #include "report/run_files.h"
 #include "service/live_replay.h"
 #include "service/run_publisher.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 namespace {
@@ -37,6 +39,7 @@ struct ReplayArguments {
   std::string output = "result";
   std::string map_in, map_out;
   bool imu = false;
+  bool wheels = false;
   bool realtime = false;
   bool lcm = false;
   double pace = 1;
@@ -63,7 +66,7 @@ RunDescription describe(const ReplayArguments& arguments, const Configuration& c
       (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
       (arguments.map_in.empty() ? "" : " --map-in " + arguments.map_in) +
       (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) + (arguments.imu ? " --imu" : "") +
-      (arguments.realtime ? " --realtime" : "") +
+      (arguments.wheels ? " --wheels" : "") + (arguments.realtime ? " --realtime" : "") +
       (arguments.pace != 1 ? " --pace " + std::to_string(arguments.pace) : "") + (arguments.lcm ? " --lcm" : "") +
       (arguments.record.empty() ? "" : " --record " + arguments.record) + " --output " + arguments.output;
   return description;
@@ -102,9 +105,32 @@ class InertialFeed {
   std::size_t next_ = 0;
 };
 
-void processAll(FrameSource& source, const Camera& camera, const std::optional<InertialRecording>& inertia,
-                LockstepRun& run) {
-  InertialFeed feed(inertia, run);
+// What was measured beside the frames, as far as it is used.
+struct MeasuredBeside {
+  std::optional<InertialRecording> inertia;
+  std::vector<OdometryPose> wheels;
+};
+
+// Likewise the wheels' poses.
+class WheelFeed {
+ public:
+  WheelFeed(const std::vector<OdometryPose>& poses, LockstepRun& run) : poses_(poses), run_(run) {}
+
+  void giveUntil(std::int64_t frame_ns) {
+    while (next_ < poses_.size() && (next_ == 0 || poses_[next_ - 1].utime <= utimeOf(frame_ns))) {
+      run_.add(poses_[next_++]);
+    }
+  }
+
+ private:
+  const std::vector<OdometryPose>& poses_;
+  LockstepRun& run_;
+  std::size_t next_ = 0;
+};
+
+void processAll(FrameSource& source, const Camera& camera, const MeasuredBeside& measured, LockstepRun& run) {
+  InertialFeed feed(measured.inertia, run);
+  WheelFeed wheel_feed(measured.wheels, run);
   ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
@@ -113,6 +139,7 @@ void processAll(FrameSource& source, const Camera& camera, const std::optional<I
     const std::string problem = frameProblem(*frame, camera);
     if (!problem.empty()) tellSkipped(frame->index, problem, progress);
     feed.giveUntil(frame->time_ns);
+    wheel_feed.giveUntil(frame->time_ns);
     const FrameRecord& record = problem.empty() ? run.process(frame->index, frame->time_ns, frame->grey)
                                                 : run.skip(frame->index, frame->time_ns, problem);
     progress.show(record, count, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
@@ -140,7 +167,7 @@ std::string mapToGoOnWith(const ReplayArguments& arguments, const FrameSource& s
 }
 
 Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Settings& settings,
-                          const std::optional<InertialRecording>& inertia, const ReplayArguments& arguments) {
+                          const MeasuredBeside& measured, const ReplayArguments& arguments) {
   LockstepRun run(camera, settings, source.size(), arguments.drawings);
   if (const Recording* recording = source.recording()) {
     const Decisions& decisions = recording->decisions;
@@ -149,7 +176,7 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
   }
   if (const std::string map = mapToGoOnWith(arguments, source, settings); !map.empty())
     run.goOnWith(loadMap(map, camera));
-  processAll(source, camera, inertia, run);
+  processAll(source, camera, measured, run);
   Replayed replayed;
   replayed.result = run.finish();
   replayed.map = run.map();
@@ -206,6 +233,20 @@ void requireWritable(const std::string& folder) {
   }
 }
 
+// Empty where they are not used.
+std::vector<OdometryPose> wheelsBeside(const FrameSource& source, const ReplayArguments& arguments,
+                                       Configuration& configuration) {
+  const std::string path = source.wheelOdometryPath();
+  const bool asked = arguments.wheels || configuration.settings.wheels.enabled;
+  if (!asked || (!arguments.wheels && (arguments.imu || arguments.realtime || path.empty()))) {
+    if (!path.empty()) std::cerr << "edgeslam: " << path << " is not used; --wheels uses it\n";
+    return {};
+  }
+  if (path.empty()) throw InputError("--wheels: no wheel_odometry.txt lies beside the frames");
+  useWheels({configuration.body_T_camera, configuration.settings.wheels.planar}, configuration.settings);
+  return readWheelOdometry(path);
+}
+
 int runReplay(const ReplayArguments& arguments) {
   if (arguments.pace != 1 && !arguments.realtime) {
     throw InputError("--pace: only what runs live has a pace, add --realtime");
@@ -218,16 +259,22 @@ int runReplay(const ReplayArguments& arguments) {
   }
   if (arguments.imu && arguments.realtime)
     throw InputError("--imu: not with --realtime, which runs on the camera alone");
+  if (arguments.wheels && arguments.realtime)
+    throw InputError("--wheels: not with --realtime, which runs on the camera alone");
+  if (arguments.wheels && arguments.imu) {
+    throw InputError("--wheels: not together with --imu yet; each of them tells metres by itself");
+  }
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
   Configuration configuration = configurationFor(*source, arguments.configuration);
   const Camera camera = cameraFor(*source, configuration, arguments.input);
-  std::optional<InertialRecording> inertia;
+  MeasuredBeside measured;
   if (arguments.imu) {
-    inertia = readInertialRecording(source->inertialFiles());
-    useInertia(inertia->unit, configuration.settings);
+    measured.inertia = readInertialRecording(source->inertialFiles());
+    useInertia(measured.inertia->unit, configuration.settings);
   } else if (!source->inertialFiles().samples.empty()) {
     std::cerr << "edgeslam: " << source->inertialFiles().samples << " is not used; --imu uses it\n";
   }
+  measured.wheels = wheelsBeside(*source, arguments, configuration);
   std::optional<Trajectory> ground_truth;
   if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
 
@@ -236,7 +283,7 @@ int runReplay(const ReplayArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   Replayed replayed = arguments.realtime
                           ? replayInRealTime(*source, camera, configuration, arguments)
-                          : replayInLockstep(*source, camera, configuration.settings, inertia, arguments);
+                          : replayInLockstep(*source, camera, configuration.settings, measured, arguments);
   RunResult& result = replayed.result;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (result.unreadable_frames == static_cast<std::int64_t>(result.frames.size())) {
@@ -279,6 +326,10 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
       "--imu", arguments->imu,
       "Use the inertial data beside the frames (imu.csv with imu.yaml, or EuRoC's imu0): metres, z up, and "
       "poses through blur");
+  command->add_flag(
+      "--wheels", arguments->wheels,
+      "Use the wheels' odometry beside the frames (wheel_odometry.txt, of the body that camera.body_T_camera is on): "
+      "metres, and poses where the camera sees nothing");
   command->add_flag("--lcm", arguments->lcm, "With --realtime: publish over LCM, as `edgeslam run` does");
   command
       ->add_option("--pace", arguments->pace,

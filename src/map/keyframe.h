@@ -12,6 +12,7 @@
 #include "image/pyramid.h"
 #include "inertia/preintegration.h"
 #include "map/map_line.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 
@@ -70,6 +71,7 @@ struct TrackedFrame {
   int world = 0;            // that its pose is in, or, of a lost frame, that the last pose was in
   std::int64_t start = -1;  // of a frame that helps a start: the first frame that its pose is against
   InertialLink inertia;     // of a keyframe; of a frame that helps a start, since that start's first frame
+  OdometryPlace wheels;     // where the wheels say that it is
 };
 
 struct Keyframe {
@@ -85,6 +87,7 @@ struct Keyframe {
   std::string reason;
   Matrix7d uncertainty = Matrix7d::Zero();  // against the world's first keyframe (mapping/map_uncertainty.h)
   InertialLink inertia;                     // from the keyframe before, of the same world
+  OdometryPlace wheels;                     // where the wheels say that it is
 };
 
 }  // namespace edgeslam
