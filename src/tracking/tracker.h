@@ -41,7 +41,7 @@ struct InertiaOnlyOptions {
 // Likewise by wheels, and frames in which none of the map is found.
 struct WheelsOnlyOptions {
   double longest_s = 20;                     // since a frame was located
-  double largest_position_deviation = 0.15;  // standard deviation, share of the scene's distance
+  double largest_position_deviation = 0.3;   // standard deviation, share of the scene's distance
   double largest_rotation_deviation = 0.12;  // [rad]
   // A frame with so many of the edges that the last one had, share of them, shows that wheels which stood are wrong.
   double contradicting_edges = 0.5;

@@ -225,14 +225,11 @@ TEST(BundleInertia, WheelsPlaceACameraThatSeesNothing) {
   BundleScene scene = sceneWithInertia(random, 6, 1);
   BundleProblem& truth = scene.truth;
   truth.speed_changes.clear();
-  const auto isOfLast = [](const BundleObservation& o) { return o.camera == 5; };
+  const auto isOfLast = [&](const BundleObservation& o) {
+    return o.camera == 5 || truth.points[static_cast<std::size_t>(o.point)].host == 5;
+  };
   truth.observations.erase(std::remove_if(truth.observations.begin(), truth.observations.end(), isOfLast),
                            truth.observations.end());
-  const auto hosts = [&](const BundleProblem& problem) {
-    return std::count_if(problem.points.begin(), problem.points.end(),
-                         [](const BundlePoint& p) { return p.host == 5; });
-  };
-  ASSERT_EQ(hosts(truth), 0);
   BundleProblem problem = perturbedProblem(random, truth, 0.005, 0.003);
   ASSERT_TRUE(adjustBundle(scene.camera, problem, manyIterations()).usable);
   EXPECT_LT(largestTranslationError(problem, truth), 1e-4);
