@@ -19,7 +19,7 @@ constexpr double turn_per_root_metre = 0.01;  // [rad/sqrt(m)]
 constexpr double least_turn = 2e-3;           // [rad]
 // Out of the plane: of ramps and thresholds, and on a plane floor, where a body rocks.
 constexpr double tilt_per_root_metre = 0.05, planar_tilt_per_root_metre = 0.01;  // [rad/sqrt(m)]
-constexpr double least_tilt = 0.01, planar_least_tilt = 3e-3;                   // [rad]
+constexpr double least_tilt = 0.01, planar_least_tilt = 3e-3;                    // [rad]
 constexpr double rise_share = 0.05, planar_rise_share = 0.005;                   // of the way
 
 double squared(double value) { return value * value; }
