@@ -1,7 +1,7 @@
 #include "drivers/lcm/body_odometry.h"
 
 #include "drivers/lcm/message_fields.h"
-#include "scale/utime.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 namespace {

@@ -8,7 +8,7 @@
 #include "edgeslam/pose_t.hpp"
 #include "edgeslam/state_t.hpp"
 #include "edgeslam/update_t.hpp"
-#include "scale/utime.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "scale/odometry_pose.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 

@@ -40,6 +40,9 @@ bool indicesInRange(const BundleProblem& problem) {
   for (const BundleSpeedChange& c : problem.speed_changes) {
     if (!std::all_of(c.cameras.begin(), c.cameras.end(), inRange)) return false;
   }
+  for (const BundleWay& w : problem.ways) {
+    if (!inRange(w.first) || !inRange(w.second)) return false;
+  }
   return true;
 }
 

@@ -1,7 +1,7 @@
 // P19, eq. 1: bundle adjustment of keyframe poses, inverse depths and straight lines. A point is one unknown: its
 // inverse distance rho along the fixed unit bearing in its host camera, X_host = bearing / rho. Residuals are whitened
 // across and along the edge; a line is four unknowns, and what is seen of it has residuals across it. An inertial unit
-// says how cameras turn and how their speed changes.
+// says how cameras turn and how their speed changes, wheels how they turn and how far they move.
 // Levenberg-Marquardt's method minimises them with the depths and lines eliminated first, a depth by a division.
 #pragma once
 
@@ -54,11 +54,17 @@ struct BundleLineObservation {
   double sigma = 0;         // standard deviation across the line [rad]
 };
 
-// What an inertial unit says of two cameras: how the second is turned against the first.
+// From so many times BundleOptions::huber on what an inertial unit says counts linearly. Neighbouring terms share what
+// was measured between them, and an unmodelled error of the unit lasts: a term that errs far says that a camera's pose
+// is wrong as often as that the unit is, so that it is let go late.
+constexpr double inertial_huber_times = 3;
+
+// What an inertial unit, or wheels, say of two cameras: how the second is turned against the first.
 struct BundleTurn {
   int first = 0, second = 0;  // cameras
   Eigen::Quaterniond first_R_second = Eigen::Quaterniond::Identity();
   Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();  // of the rotation vector's error, second camera's frame
+  double huber_times = inertial_huber_times;
 };
 
 // What it says of three cameras one after the other: how the mean speed between the last two differs from that between
@@ -71,7 +77,15 @@ struct BundleSpeedChange {
   Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();  // of the error [s/m], first camera's frame
 };
 
-// What both count with.
+// What wheels say of two cameras: where the second is, as the first one sees it.
+struct BundleWay {
+  int first = 0, second = 0;                                // cameras
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();            // first camera's frame [m]
+  Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();  // of the error [1/m], first camera's frame
+  double huber_times = inertial_huber_times;
+};
+
+// What these count with.
 struct BundleInertia {
   double metres_a_unit = 1;                                // of the map
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();       // world frame [m/s^2]
@@ -87,15 +101,18 @@ struct BundleProblem {
   BundleInertia inertia;
   std::vector<BundleTurn> turns;
   std::vector<BundleSpeedChange> speed_changes;
+  std::vector<BundleWay> ways;
   // Where over 0: the distance of this camera's centre from camera 0's is kept (the gauge of scale when only camera 0
   // is fixed), by scaling all centres and lines about camera 0 and all depths. Ignored where another camera, a point or
-  // a line is fixed, as that holds the scale. Speed changes then tell how the scale differs from place to place.
+  // a line is fixed, as that holds the scale. Speed changes and ways then tell how the scale differs from place to
+  // place.
   int scale_camera = -1;
 };
 
 struct BundleOptions {
   int iterations = 8;
-  double huber = 2.0;  // whitened, of the norm of an observation's two residuals, of a line's one, of inertia's three
+  double huber = 2.0;  // whitened, of the norm of an observation's two residuals, of a line's one, of inertia's or the
+                       // wheels' three
 };
 
 struct BundleResult {

@@ -7,16 +7,13 @@ namespace {
 
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
 
-// Neighbouring terms share what was measured between them, and an unmodelled error of the unit lasts: a term that errs
-// far says that a camera's pose is wrong as often as that the unit is, so that it is let go late.
-constexpr double huber_times = 3;
-
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 // Whitened, with the derivatives by the twist of each camera where asked for.
 struct Term {
   Eigen::Vector3d residual;
   std::array<Matrix36d, 3> by_twist;
+  double huber_times = inertial_huber_times;
 };
 
 struct CameraAt {
@@ -37,11 +34,25 @@ void evaluate(const BundleTurn& turn, const CameraAt& first, const CameraAt& sec
   const Eigen::Quaterniond error = turn.first_R_second.conjugate() * first.rotation.conjugate() * second.rotation;
   const Eigen::Vector3d error_vector = rotationLog(error.normalized());
   term.residual = turn.whitening * error_vector;
+  term.huber_times = turn.huber_times;
   if (!derivatives) return;
   term.by_twist[1].leftCols<3>().setZero();
   term.by_twist[1].rightCols<3>() =
       turn.whitening * inverseRightJacobian(error_vector) * second.rotation.conjugate().toRotationMatrix();
   term.by_twist[0] = -term.by_twist[1];
+}
+
+void evaluate(double metres_a_unit, const BundleWay& way, const CameraAt& first, const CameraAt& second,
+              const Eigen::Vector3d& origin, Term& term, bool derivatives) {
+  const Eigen::Vector3d moved = metres_a_unit * (second.centre - first.centre);
+  const Eigen::Matrix3d whitening = way.whitening * first.rotation.conjugate().toRotationMatrix();
+  term.residual = whitening * moved - way.whitening * way.way;
+  term.huber_times = way.huber_times;
+  if (!derivatives) return;
+  term.by_twist[1].leftCols<3>() = metres_a_unit * whitening;
+  term.by_twist[1].rightCols<3>() = -metres_a_unit * whitening * skew(second.centre - origin);
+  term.by_twist[0].leftCols<3>() = -term.by_twist[1].leftCols<3>();
+  term.by_twist[0].rightCols<3>() = whitening * (metres_a_unit * skew(first.centre - origin) + skew(moved));
 }
 
 void evaluate(const BundleInertia& inertia, const BundleSpeedChange& change, const std::array<CameraAt, 3>& cameras,
@@ -56,6 +67,7 @@ void evaluate(const BundleInertia& inertia, const BundleSpeedChange& change, con
   const Eigen::Vector3d error =
       (place(2) - place(1)) / t2 - (place(1) - place(0)) / t1 - 0.5 * (t1 + t2) * inertia.gravity - first - second;
   term.residual = whitening * error;
+  term.huber_times = inertial_huber_times;
   if (!derivatives) return;
   const std::array<double, 3> weights{1 / t1, -1 / t1 - 1 / t2, 1 / t2};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -98,6 +110,12 @@ void forEachTerm(const BundleProblem& problem, const BundleStructure& structure,
     evaluate(problem.inertia, change, camerasOf(change, state), origin, term, derivatives);
     function(structured, term);
   }
+  for (const StructuredInertia& structured : structure.ways) {
+    const BundleWay& way = problem.ways[at(structured.index)];
+    evaluate(problem.inertia.metres_a_unit, way, cameraAt(state, way.first), cameraAt(state, way.second), origin, term,
+             derivatives);
+    function(structured, term);
+  }
 }
 
 void add(const StructuredInertia& structured, const Term& term, double weight, BundleLinearization& linearization) {
@@ -122,7 +140,7 @@ void add(const StructuredInertia& structured, const Term& term, double weight, B
 double inertialCost(const BundleProblem& problem, double huber) {
   Term term;
   double cost = 0;
-  const auto count = [&] { cost += 0.5 * huberLoss(term.residual.squaredNorm(), huber_times * huber); };
+  const auto count = [&] { cost += 0.5 * huberLoss(term.residual.squaredNorm(), term.huber_times * huber); };
   for (const BundleTurn& turn : problem.turns) {
     if (!usable(turn)) continue;
     evaluate(turn, cameraAt(problem, turn.first), cameraAt(problem, turn.second), term, false);
@@ -133,6 +151,12 @@ double inertialCost(const BundleProblem& problem, double huber) {
     evaluate(problem.inertia, change, camerasOf(change, problem), Eigen::Vector3d::Zero(), term, false);
     count();
   }
+  for (const BundleWay& way : problem.ways) {
+    if (!usable(way)) continue;
+    evaluate(problem.inertia.metres_a_unit, way, cameraAt(problem, way.first), cameraAt(problem, way.second),
+             Eigen::Vector3d::Zero(), term, false);
+    count();
+  }
   return cost;
 }
 
@@ -141,7 +165,7 @@ double inertialCost(const BundleProblem& problem, const BundleStructure& structu
   double cost = 0;
   forEachTerm(problem, structure, state, Eigen::Vector3d::Zero(), false,
               [&](const StructuredInertia&, const Term& term) {
-                cost += 0.5 * huberLoss(term.residual.squaredNorm(), huber_times * huber);
+                cost += 0.5 * huberLoss(term.residual.squaredNorm(), term.huber_times * huber);
               });
   return cost;
 }
@@ -150,8 +174,8 @@ void linearizeInertia(const BundleProblem& problem, const BundleStructure& struc
                       double huber, BundleLinearization& linearization) {
   forEachTerm(problem, structure, state, linearization.origin, true,
               [&](const StructuredInertia& structured, const Term& term) {
-                linearization.cost += 0.5 * huberLoss(term.residual.squaredNorm(), huber_times * huber);
-                add(structured, term, huberWeight(term.residual.norm(), huber_times * huber), linearization);
+                linearization.cost += 0.5 * huberLoss(term.residual.squaredNorm(), term.huber_times * huber);
+                add(structured, term, huberWeight(term.residual.norm(), term.huber_times * huber), linearization);
               });
 }
 

@@ -1,5 +1,5 @@
 // What a bundle adjustment does with what an inertial unit says of its cameras: their turns, and how their mean speed
-// changes.
+// changes; and with what wheels say: their turns, and the ways between them, s R_i^T (c_j - c_i) in metres.
 //
 // With P = s c + R t, the unit's place in metres for a camera at c turned by R, and from times and places of three
 // cameras i, j, k the mean speeds V1 = (P_j - P_i) / T1 and V2 = (P_k - P_j) / T2, preintegration
@@ -16,12 +16,12 @@
 
 namespace edgeslam {
 
-// Inertia's part of the robust cost, of a problem as it stands and at a state.
+// Inertia's and the wheels' part of the robust cost, of a problem as it stands and at a state.
 double inertialCost(const BundleProblem& problem, double huber);
 double inertialCost(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
                     double huber);
 
-// Adds inertia to normal equations whose blocks of pairs are not joined yet.
+// Adds both to normal equations whose blocks of pairs are not joined yet.
 void linearizeInertia(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
                       double huber, BundleLinearization& linearization);
 

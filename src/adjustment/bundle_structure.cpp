@@ -20,6 +20,7 @@ bool takesPart(const BundleProblem& problem, const BundleLineObservation& o) {
 }
 
 std::array<int, 2> camerasOf(const BundleTurn& turn) { return {turn.first, turn.second}; }
+std::array<int, 2> camerasOf(const BundleWay& way) { return {way.first, way.second}; }
 const std::array<int, 3>& camerasOf(const BundleSpeedChange& change) { return change.cameras; }
 
 int landmarkOf(const BundleObservation& o) { return o.point; }
@@ -62,6 +63,11 @@ void nameUnknowns(const BundleProblem& problem, BundleStructure& structure) {
     use(problem.points[at(o.point)].host);
   }
   for (const int k : structure.of_lines.order) use(problem.line_observations[at(k)].camera);
+  for (const BundleWay& way : problem.ways) {  // it may be all that is known of a camera
+    if (!usable(way)) continue;
+    use(way.first);
+    use(way.second);
+  }
   structure.camera_of_unknown.clear();
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
     if (structure.unknown_of_camera[c] < 0) continue;
@@ -198,7 +204,7 @@ void placeBlocks(int most_dense, BundleStructure& structure) {
     const auto ask = [&](int row, int column) { pairs.push_back(key(row, column)); };
     for (const StructuredPoint& point : structure.points) forEachPair(point, structure.viewers, ask);
     for (const StructuredLine& line : structure.lines) forEachPair(line, structure.line_viewers, ask);
-    for (const auto* inertia : {&structure.turns, &structure.speed_changes}) {
+    for (const auto* inertia : {&structure.turns, &structure.speed_changes, &structure.ways}) {
       for (const StructuredInertia& term : *inertia) {
         forEachPair(term, [&](int, int row, int column) { ask(row, column); });
       }
@@ -226,7 +232,7 @@ void placeBlocks(int most_dense, BundleStructure& structure) {
   };
   place(structure.points, structure.viewers, structure.blocks);
   place(structure.lines, structure.line_viewers, structure.line_blocks);
-  for (auto* inertia : {&structure.turns, &structure.speed_changes}) {
+  for (auto* inertia : {&structure.turns, &structure.speed_changes, &structure.ways}) {
     for (StructuredInertia& term : *inertia) {
       forEachPair(term, [&](int pair, int row, int column) { term.blocks[at(pair)] = blockAt(row, column); });
     }
@@ -263,6 +269,10 @@ bool usable(const BundleTurn& turn) {
   return turn.first_R_second.coeffs().allFinite() && turn.whitening.allFinite() && turn.first != turn.second;
 }
 
+bool usable(const BundleWay& way) {
+  return way.way.allFinite() && way.whitening.allFinite() && way.first != way.second;
+}
+
 bool usable(const BundleSpeedChange& change) {
   return change.of_first.allFinite() && change.of_second.allFinite() && change.whitening.allFinite() &&
          change.seconds[0] > 0 && change.seconds[1] > 0 && std::isfinite(change.seconds[0] + change.seconds[1]) &&
@@ -285,6 +295,7 @@ void structureBundle(const Camera& camera, const BundleProblem& problem, int mos
   for (std::size_t i = 0; i < problem.lines.size(); ++i) addLine(camera, problem, static_cast<int>(i), structure);
   addInertia(problem.turns, structure.unknown_of_camera, structure.turns);
   addInertia(problem.speed_changes, structure.unknown_of_camera, structure.speed_changes);
+  addInertia(problem.ways, structure.unknown_of_camera, structure.ways);
   placeBlocks(most_dense, structure);
 }
 

@@ -50,9 +50,9 @@ struct StructuredLine {
   int first_block = 0;                             // of the lines', see blockOfPair()
 };
 
-// What an inertial unit says of two or three cameras (bundle_inertia.h).
+// What an inertial unit or wheels say of two or three cameras (bundle_inertia.h).
 struct StructuredInertia {
-  int index = 0;                            // in the problem's turns or speed changes
+  int index = 0;                            // in the problem's turns, speed changes or ways
   std::array<int, 3> cameras{-1, -1, -1};   // -1: there is none
   std::array<int, 3> unknowns{-1, -1, -1};  // of these; -1: fixed
   std::array<int, 6> blocks{};              // of their pairs, see blockOfPair(); of free ones alone
@@ -79,7 +79,7 @@ struct BundleStructure {
   std::vector<StructuredLineObservation> line_observations;
   std::vector<int> line_viewers;  // as `viewers`, of each line
   std::vector<int> line_blocks;   // as `blocks`, of each line
-  std::vector<StructuredInertia> turns, speed_changes;
+  std::vector<StructuredInertia> turns, speed_changes, ways;
   std::vector<int> camera_of_unknown;  // cameras that are free and observed, ascending
   std::vector<BlockPlace> places;      // of each block, by column, then row; all diagonal blocks are there
   bool dense = false;                  // all blocks of the lower triangle are there
@@ -100,6 +100,7 @@ bool usable(const Measurement& measurement);
 bool usable(const BundleLine& line);
 bool usable(const BundleLineObservation& observation);
 bool usable(const BundleTurn& turn);
+bool usable(const BundleWay& way);
 bool usable(const BundleSpeedChange& change);
 
 // Indices must be in range. Takes out observations without effect (by the point's own host, of or by what is not

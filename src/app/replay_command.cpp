@@ -13,6 +13,7 @@
 #include <opencv2/core/version.hpp>
 
 #include "app/command_line.h"
+#include "app/measured_beside.h"
 #include "app/replay_outcome.h"
 #include "app/replay_progress.h"
 #include "configuration/configuration.h"
@@ -21,6 +22,7 @@
 #include "files/format_text.h"
 #include "frames/frame_problem.h"
 #include "frames/inertial_feed.h"
+#include "frames/wheel_feed.h"
 #include "map/saved_map.h"
 #include "pipeline/lockstep_run.h"
 #include "recording/open_frame_source.h"
@@ -28,6 +30,7 @@
 #include "report/run_files.h"
 #include "service/live_replay.h"
 #include "service/run_publisher.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 namespace {
@@ -38,6 +41,7 @@ struct ReplayArguments {
   std::string output = "result";
   std::string map_in, map_out;
   bool imu = false;
+  bool wheels = false;
   bool realtime = false;
   bool lcm = false;
   double pace = 1;
@@ -64,7 +68,7 @@ RunDescription describe(const ReplayArguments& arguments, const Configuration& c
       (arguments.configuration.empty() ? "" : " --config " + arguments.configuration) +
       (arguments.map_in.empty() ? "" : " --map-in " + arguments.map_in) +
       (arguments.map_out.empty() ? "" : " --map-out " + arguments.map_out) + (arguments.imu ? " --imu" : "") +
-      (arguments.realtime ? " --realtime" : "") +
+      (arguments.wheels ? " --wheels" : "") + (arguments.realtime ? " --realtime" : "") +
       (arguments.pace != 1 ? " --pace " + std::to_string(arguments.pace) : "") + (arguments.lcm ? " --lcm" : "") +
       (arguments.record.empty() ? "" : " --record " + arguments.record) + " --output " + arguments.output;
   return description;
@@ -84,9 +88,10 @@ void requireReadoutWithin(const Camera& camera, double frame_interval_s) {
                 camera.readout_s, frame_interval_s));
 }
 
-void processAll(FrameSource& source, const Camera& camera, const std::vector<InertialSample>& samples,
-                const Settings& settings, LockstepRun& run) {
-  InertialFeed inertia(samples, settings.tracking.inertia ? settings.tracking.inertia->offset_ns : 0);
+void processAll(FrameSource& source, const Camera& camera, const MeasuredBeside& measured, const Settings& settings,
+                LockstepRun& run) {
+  InertialFeed inertia(measured.inertia, settings.tracking.inertia ? settings.tracking.inertia->offset_ns : 0);
+  WheelFeed wheels(measured.wheels);
   ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
@@ -95,6 +100,7 @@ void processAll(FrameSource& source, const Camera& camera, const std::vector<Ine
     const std::string problem = frameProblem(*frame, camera);
     if (!problem.empty()) tellSkipped(frame->index, problem, progress);
     inertia.giveUntil(frame->time_ns, [&](const InertialSample& sample) { run.add(sample); });
+    wheels.giveUntil(frame->time_ns, [&](const OdometryPose& pose) { run.add(pose); });
     const FrameRecord& record = problem.empty() ? run.process(frame->index, frame->time_ns, frame->grey)
                                                 : run.skip(frame->index, frame->time_ns, problem);
     progress.show(record, count, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
@@ -122,7 +128,7 @@ std::string mapToGoOnWith(const ReplayArguments& arguments, const FrameSource& s
 }
 
 Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Settings& settings,
-                          const std::vector<InertialSample>& inertia, const ReplayArguments& arguments) {
+                          const MeasuredBeside& measured, const ReplayArguments& arguments) {
   LockstepRun run(camera, settings, source.size(), arguments.drawings);
   if (const Recording* recording = source.recording()) {
     const Decisions& decisions = recording->decisions;
@@ -131,7 +137,7 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
   }
   if (const std::string map = mapToGoOnWith(arguments, source, settings); !map.empty())
     run.goOnWith(loadMap(map, camera));
-  processAll(source, camera, inertia, settings, run);
+  processAll(source, camera, measured, settings, run);
   Replayed replayed;
   replayed.result = run.finish();
   replayed.map = run.map();
@@ -189,37 +195,6 @@ void requireWritable(const std::string& folder) {
   }
 }
 
-// What was measured beside the frames, with the settings to use it; empty where it is not to be used. A recording's
-// inertia is among its decisions.
-std::vector<InertialSample> inertiaFor(const FrameSource& source, const ReplayArguments& arguments,
-                                       Configuration& configuration) {
-  InertiaConfiguration& configured = configuration.inertia;
-  configured.is_used |= arguments.imu;
-  const InertialFiles files = source.inertialFiles();
-  const Recording* recording = source.recording();
-  if (!configured.is_used) {
-    if (!files.samples.empty()) std::cerr << "edgeslam: " << files.samples << " is not used; --imu uses it\n";
-    return {};
-  }
-  if (recording && recording->decisions.inertia.empty()) {
-    throw InputError(recording->folder + ": the run was recorded without inertial data");
-  }
-  std::vector<InertialSample> samples;
-  if (recording) {
-    for (const InertiaGiven& given : recording->decisions.inertia) samples.push_back(given.sample);
-  } else if (configured.has_unit) {
-    samples = readInertialSamples(files);
-  } else {
-    InertialRecording beside = readInertialRecording(files);
-    configured.unit = beside.unit;
-    configured.has_unit = true;
-    samples = std::move(beside.samples);
-  }
-  configuration.settings = settingsWithInertia(configuration);
-  const bool is_repeated = recording && !arguments.realtime && recording->decisions.not_recorded == 0;
-  return is_repeated ? std::vector<InertialSample>() : samples;
-}
-
 int runReplay(const ReplayArguments& arguments) {
   if (arguments.pace != 1 && !arguments.realtime) {
     throw InputError("--pace: only what runs live has a pace, add --realtime");
@@ -233,7 +208,8 @@ int runReplay(const ReplayArguments& arguments) {
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
   Configuration configuration = configurationFor(*source, arguments.configuration);
   const Camera camera = cameraFor(*source, configuration, arguments.input);
-  const std::vector<InertialSample> inertia = inertiaFor(*source, arguments, configuration);
+  const MeasuredBeside measured =
+      measuredBeside(*source, {arguments.imu, arguments.wheels, arguments.realtime}, configuration);
   std::optional<Trajectory> ground_truth;
   if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
 
@@ -241,8 +217,8 @@ int runReplay(const ReplayArguments& arguments) {
   if (!arguments.map_out.empty()) requireMapCanBeSaved(arguments.map_out);
   const auto start = std::chrono::steady_clock::now();
   Replayed replayed = arguments.realtime
-                          ? replayInRealTime(*source, camera, configuration, inertia, arguments)
-                          : replayInLockstep(*source, camera, configuration.settings, inertia, arguments);
+                          ? replayInRealTime(*source, camera, configuration, measured.inertia, arguments)
+                          : replayInLockstep(*source, camera, configuration.settings, measured, arguments);
   RunResult& result = replayed.result;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (result.unreadable_frames == static_cast<std::int64_t>(result.frames.size())) {
@@ -285,6 +261,10 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
       "--imu", arguments->imu,
       "Use the inertial data beside the frames (imu.csv with imu.yaml, or EuRoC's imu0): metres, z up, and "
       "poses through blur");
+  command->add_flag(
+      "--wheels", arguments->wheels,
+      "Use the wheels' odometry beside the frames (wheel_odometry.txt, of the body that camera.body_T_camera is on): "
+      "metres, and poses where the camera sees nothing");
   command->add_flag("--lcm", arguments->lcm, "With --realtime: publish over LCM, as `edgeslam run` does");
   command
       ->add_option("--pace", arguments->pace,

@@ -47,6 +47,16 @@ void tellInertia(const RunResult& result) {
   }
 }
 
+void tellWheels(const RunResult& result) {
+  const auto known = result.wheels.find(result.main_world);
+  if (known != result.wheels.end()) {
+    std::printf("lengths are metres (+- %.1f %%), by the wheels\n", 100 * known->second.sigma);
+  } else if (!result.lacking_for_wheels.empty()) {
+    std::printf("lengths are map units: %s\n", result.lacking_for_wheels.c_str());
+  }
+  if (!result.contradiction_of_wheels.empty()) std::printf("%s\n", result.contradiction_of_wheels.c_str());
+}
+
 void tellError(const Trajectory& estimate, const Trajectory& ground_truth) {
   try {
     const AbsoluteError error = absoluteError(estimate, ground_truth, Alignment::similarity);
@@ -65,6 +75,7 @@ void tellOutcome(const RunResult& result, const std::optional<Trajectory>& groun
   tellPoses(result, summary);
   if (summary.final_poses > 0) {
     tellInertia(result);
+    tellWheels(result);
     if (ground_truth) tellError(finalTrajectory(result, result.main_world), *ground_truth);
     if (reportsAreBuiltIn()) {
       std::printf("%s/report.html shows it all\n", output.c_str());

@@ -66,6 +66,9 @@ DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
     setup.capture.width = setup.camera.width;
     setup.capture.height = setup.camera.height;
   }
+  if (setup.configuration.settings.wheels.enabled) {
+    log.tell("wheels.enabled: not used by edgeslam run yet; scale.source: odometry has its metres from the wheels");
+  }
   setup.record_folder = arguments.record;
   const bool is_frozen = setup.configuration.settings.tracking.map_is_frozen;
   setup.map_out = arguments.map_out.empty() && !is_frozen ? service.map_file : arguments.map_out;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/command_line.h"
+#include "edgeslam/input_error.h"
 #include "simulator/simulator.h"
 #include "simulator/simulator_folder.h"
 
@@ -18,7 +19,7 @@ namespace {
 struct SimulateOptions {
   SimulationOptions simulation;
   std::string scene, output;
-  std::vector<std::string> covered, shaken, still, turned;
+  std::vector<std::string> covered, shaken, still, turned, slipped;
   bool force = false;
 };
 
@@ -43,6 +44,9 @@ int simulate(SimulateOptions options) {
   options.simulation.shaken = frameRanges(options.shaken);
   options.simulation.still = frameRanges(options.still);
   options.simulation.turned = frameRanges(options.turned);
+  options.simulation.slipped = frameRanges(options.slipped);
+  if (!options.slipped.empty() && !options.simulation.wheels)
+    throw InputError("--slip: only wheels slip, add --wheels");
   const SimulatedSequence sequence = makeSequence(options.simulation);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   writeSequence(sequence, options.output, options.force,
@@ -93,6 +97,12 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--imu", simulation.inertia,
                     "Inertial data beside the frames: imu.csv at 200 Hz with noise and biases, and imu.yaml");
+  command->add_flag("--wheels", simulation.wheels,
+                    "What wheels beneath the camera would say beside the frames, with noise: wheel_odometry.txt");
+  command
+      ->add_option("--slip", options->slipped,
+                   "With --wheels: frames in which the wheels spin, FIRST:COUNT; may be repeated")
+      ->allow_extra_args(false);
   command->add_flag("--force", options->force, "Write to a folder that is not empty");
   command->callback([options, &exit_code] { exit_code = simulate(*options); });
 }

@@ -203,6 +203,12 @@ Keys serviceKeys(ServiceOptions& service, Settings& settings) {
        "of the saved map that the run continues; 0: not known"},
       {"scale.sigma", &scale.sigma, "", 0, 1, "standard deviation of that, as a share of it"},
 
+      heading("wheels", "The wheels' odometry as a motion (docs/method.md): of `edgeslam replay` alone so far"),
+      {"wheels.enabled", &settings.wheels.enabled, "", 0, 0,
+       "used where it lies beside recorded frames (wheel_odometry.txt), as with --wheels"},
+      {"wheels.planar", &settings.wheels.planar, "", 0, 0,
+       "the robot stays on a plane floor: it hardly tilts or rises"},
+
       heading("viewer", "A page in the browser for people who look on"),
       {"viewer.enabled", &viewer.enabled, "", 0, 0, "`edgeslam run` serves a page that shows the run"},
       text("viewer.address", &viewer.address,
@@ -483,8 +489,8 @@ std::vector<ConfigurationKey> configurationKeys(Configuration& configuration) {
 }
 
 bool isOfMethod(const ConfigurationKey& key) {
-  constexpr std::array<const char*, 9> others{"camera", "capture",   "imu",   "lcm",   "ros2",
-                                              "map",    "recording", "scale", "viewer"};
+  constexpr std::array<const char*, 10> others{"camera", "capture",   "imu",   "lcm",    "ros2",
+                                               "map",    "recording", "scale", "wheels", "viewer"};
   return std::find(others.begin(), others.end(), key.section()) == others.end();
 }
 

@@ -89,6 +89,7 @@ class FolderSource : public FrameSource {
   std::optional<Camera> camera() const override { return companions_.camera; }
   std::string groundTruthPath() const override { return companions_.ground_truth_path; }
   InertialFiles inertialFiles() const override { return companions_.inertial_files; }
+  std::string wheelOdometryPath() const override { return companions_.wheel_odometry_path; }
 
  private:
   std::string kind_;

@@ -21,6 +21,7 @@ struct FrameCompanions {
   std::string camera_path;  // empty where there is no calibration
   std::string ground_truth_path;
   InertialFiles inertial_files;
+  std::string wheel_odometry_path;
 };
 
 // TUM RGB-D's rgb.txt ("time file" a line, seconds) and the associations.txt of TUM and ICL-NUIM, whose four columns

@@ -69,6 +69,11 @@ FrameCompanions findCompanions(const std::vector<fs::path>& folders) {
   if (!companions.camera_path.empty()) companions.camera = readCalibration(companions.camera_path);
   companions.inertial_files = findInertialFiles(folders);
   for (const fs::path& folder : folders) {
+    if (companions.wheel_odometry_path.empty() && isFile(folder / "wheel_odometry.txt")) {
+      companions.wheel_odometry_path = (folder / "wheel_odometry.txt").string();
+    }
+  }
+  for (const fs::path& folder : folders) {
     for (const char* name : {"groundtruth.txt", "state_groundtruth_estimate0/data.csv"}) {
       if (isFile(folder / name) && companions.ground_truth_path.empty()) {
         companions.ground_truth_path = (folder / name).string();

@@ -39,6 +39,8 @@ class FrameSource {
   virtual std::string groundTruthPath() const = 0;
   // What an inertial unit measured, beside the frames.
   virtual InertialFiles inertialFiles() const { return {}; }
+  // Path of what the wheels say beside the frames (wheel_odometry.txt), or empty.
+  virtual std::string wheelOdometryPath() const { return ""; }
   // The live run that these frames were recorded of; null where they are no recording of the flight recorder.
   virtual const Recording* recording() const { return nullptr; }
 };

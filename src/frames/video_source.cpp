@@ -129,6 +129,7 @@ class StampedVideoSource : public FrameSource {
   std::optional<Camera> camera() const override { return companions_.camera; }
   std::string groundTruthPath() const override { return companions_.ground_truth_path; }
   InertialFiles inertialFiles() const override { return companions_.inertial_files; }
+  std::string wheelOdometryPath() const override { return companions_.wheel_odometry_path; }
 
  private:
   [[noreturn]] void failOnCounts(std::size_t pictures) const {
@@ -174,6 +175,7 @@ class VideoSource : public FrameSource {
   std::optional<Camera> camera() const override { return companions_.camera; }
   std::string groundTruthPath() const override { return companions_.ground_truth_path; }
   InertialFiles inertialFiles() const override { return companions_.inertial_files; }
+  std::string wheelOdometryPath() const override { return companions_.wheel_odometry_path; }
 
  private:
   std::int64_t timeOfCurrent(std::int64_t index) const {

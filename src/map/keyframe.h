@@ -13,6 +13,7 @@
 #include "map/keyframe_images.h"
 #include "map/map_line.h"
 #include "map/shared_list.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 
@@ -64,6 +65,7 @@ struct TrackedFrame {
   int world = 0;            // that its pose is in, or, of a lost frame, that the last pose was in
   std::int64_t start = -1;  // of a frame that helps a start: the first frame that its pose is against
   InertialLink inertia;     // of a keyframe; of a frame that helps a start, since that start's first frame
+  OdometryPlace wheels;     // where the wheels say that it is
 };
 
 struct Keyframe {
@@ -79,6 +81,7 @@ struct Keyframe {
   std::string reason;
   Matrix7d uncertainty = Matrix7d::Zero();  // against the world's first keyframe (mapping/map_uncertainty.h)
   InertialLink inertia;                     // from the keyframe before, of the same world
+  OdometryPlace wheels;                     // where the wheels say that it is
 };
 
 }  // namespace edgeslam

@@ -7,6 +7,7 @@
 
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
+#include "wheels/wheel_scale.h"
 
 namespace edgeslam {
 
@@ -29,6 +30,7 @@ struct Map {
   std::map<LineId, MapLine> lines;           // likewise
   LineId next_line = 0;                      // no number is given twice
   std::map<int, InertialAlignment> inertia;  // by world, where there is an inertial unit
+  std::map<int, WheelScale> wheels;          // by world, where there are wheels
 };
 
 // Position in the world frame.

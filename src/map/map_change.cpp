@@ -139,7 +139,10 @@ void applyChange(const MapChange& change, Map& map) {
     }
     if (change.join && keyframe.world == change.join->from) keyframe.world = change.join->to;
   }
-  if (change.join) joinInertia(*change.join, map);
+  if (change.join) {
+    joinInertia(*change.join, map);
+    joinWheels(*change.join, map);
+  }
   for (const PointId id : change.erased_points) map.points.erase(id);
   for (const LineId id : change.dissolved_lines) dissolveLine(id, map);
   for (const auto& [id, keyframe] : change.erased_views) {

@@ -9,6 +9,7 @@
 
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
+#include "wheels/wheel_scale.h"
 
 namespace edgeslam {
 
@@ -42,6 +43,7 @@ struct MapView {
   bool initialised = false;        // false: a provisional, flat-depth map from the first frame; poses are not given out
   std::string waiting_for;         // why not, in words that a user understands
   std::optional<InertialAlignment> inertia;  // of the world, where there is an inertial unit
+  WheelScale wheels;                         // of the world
   KeyframeTable<ViewKeyframe> keyframes;
   std::vector<ViewPoint> points;  // sorted by id
 };

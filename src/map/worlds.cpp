@@ -71,6 +71,7 @@ bool forgetFrom(Map& map, KeyframeId first) {
 void forgetWorld(Map& map, int world) {
   for (const KeyframeId id : keyframesOf(map, world)) map.keyframes.erase(id);
   map.inertia.erase(world);
+  map.wheels.erase(world);
   forgetWithoutKeyframes(map);
 }
 
@@ -90,6 +91,18 @@ void joinWorlds(const WorldJoin& join, Map& map) {
     keyframe.world = join.to;
   }
   joinInertia(join, map);
+  joinWheels(join, map);
+}
+
+void joinWheels(const WorldJoin& join, Map& map) {
+  const auto known = map.wheels.find(join.from);
+  if (known == map.wheels.end()) return;
+  WheelScale& older = map.wheels[join.to];
+  if (!older.is_known && known->second.is_known) {
+    older = known->second;
+    older.metres_a_unit /= join.to_S_from.scale;
+  }
+  map.wheels.erase(join.from);
 }
 
 void joinInertia(const WorldJoin& join, Map& map) {

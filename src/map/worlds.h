@@ -41,5 +41,7 @@ void joinWorlds(const WorldJoin& join, Map& map);
 
 // What is known of how the younger world lies to the earth, the older one goes by if nothing is known of it.
 void joinInertia(const WorldJoin& join, Map& map);
+// What is known of its scale by the wheels, likewise.
+void joinWheels(const WorldJoin& join, Map& map);
 
 }  // namespace edgeslam

@@ -19,6 +19,7 @@ void addKeyframe(const TrackedFrame& frame, KeyframeId id, const Pose& pose, con
   keyframe.straight_edges = frame.straight_edges;
   keyframe.images = frame.images;
   keyframe.reason = reason;
+  keyframe.wheels = frame.wheels;
   map.keyframes.push_back(std::move(keyframe));
 }
 

@@ -8,6 +8,7 @@
 #include "mapping/inertial_terms.h"
 #include "mapping/line_bundle.h"
 #include "mapping/motion_along_lines.h"
+#include "mapping/wheel_terms.h"
 
 namespace edgeslam {
 namespace {
@@ -182,6 +183,12 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   addMotionAlongLines(camera, map, lines.lines, indexOf, problem);
   if (const InertialAlignment* known = alignmentOf(options, map, ordered_free.front())) {
     addInertialTerms(*options.inertia, *known, map, ordered_free, cameraOf, problem);
+  }
+  if (options.wheels) {
+    const auto known = map.wheels.find(map.keyframes[ordered_free.front()].world);
+    addWheelTerms(*options.wheels, known != map.wheels.end() ? known->second : WheelScale(), map, ordered_free,
+                  cameraOf, problem);
+    if (!problem.ways.empty()) problem.scale_camera = -1;  // the wheels hold the scale
   }
   const BundleResult result = adjustBundle(camera, problem, options.bundle, interrupted);
   if (!result.usable) return false;

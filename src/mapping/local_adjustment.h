@@ -9,6 +9,7 @@
 #include "geometry/camera.h"
 #include "map/map.h"
 #include "mapping/line_options.h"
+#include "wheels/wheel_motion.h"
 
 namespace edgeslam {
 
@@ -23,6 +24,7 @@ struct LocalAdjustmentOptions {
   LineOptions lines;
   std::optional<InertialUnit>
       inertia;  // what it felt between keyframes counts in worlds whose lie to the earth is known
+  std::optional<WheelOptions> wheels;  // that turn beneath the camera; without: the camera alone
 };
 
 // Adjusts around the latest keyframe; takes out outliers and points that lost their depth. False where the solver

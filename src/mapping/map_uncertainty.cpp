@@ -48,7 +48,7 @@ double squared(double value) { return value * value; }
 
 // What the points that both see leave open of `keyframe` relative to `other`, and how far the way between them leads
 // astray.
-std::optional<Matrix7d> linkUncertainty(const Camera& camera, const MapUncertaintyOptions& options, const Map& map,
+std::optional<Matrix7d> seenUncertainty(const Camera& camera, const MapUncertaintyOptions& options, const Map& map,
                                         const Keyframe& keyframe, KeyframeId other_id) {
   const Keyframe& other = map.keyframes[other_id];
   const Pose keyframe_T_other = keyframe.world_T_camera.inverse() * other.world_T_camera;
@@ -76,10 +76,32 @@ std::optional<Matrix7d> linkUncertainty(const Camera& camera, const MapUncertain
   return link;
 }
 
+// What the wheels leave open.
+std::optional<Matrix7d> drivenUncertainty(const MapUncertaintyOptions& options, const Map& map,
+                                          const Keyframe& keyframe, const Keyframe& other) {
+  const auto scale = map.wheels.find(keyframe.world);
+  if (!options.wheels || scale == map.wheels.end() || !scale->second.is_known) return std::nullopt;
+  const std::optional<WheelMotion> driven = wheelMotion(*options.wheels, other.wheels, keyframe.wheels);
+  if (!driven) return std::nullopt;
+  Matrix7d link = Matrix7d::Zero();
+  link.topLeftCorner<6, 6>() = driven->covariance;
+  link.topRows<3>() /= scale->second.metres_a_unit;
+  link.leftCols<3>() /= scale->second.metres_a_unit;
+  link(6, 6) = squared(scale->second.sigma);
+  return link;
+}
+
+// By the points, or else by the wheels.
+std::optional<Matrix7d> linkUncertainty(const Camera& camera, const MapUncertaintyOptions& options, const Map& map,
+                                        const Keyframe& keyframe, KeyframeId other_id) {
+  const std::optional<Matrix7d> seen = seenUncertainty(camera, options, map, keyframe, other_id);
+  return seen ? seen : drivenUncertainty(options, map, keyframe, map.keyframes[other_id]);
+}
+
 // Lengths count in map units: the scene of the map's start is one away.
 double sizeOf(const Matrix7d& uncertainty) { return uncertainty.trace(); }
 
-// Those that share most points, best first.
+// Those that share most points, best first; and with wheels the one before.
 std::vector<KeyframeId> neighboursOf(const MapUncertaintyOptions& options, const Map& map, KeyframeId keyframe) {
   const std::vector<int> shared = sharedPoints(map, keyframe);
   std::vector<KeyframeId> neighbours;
@@ -92,6 +114,9 @@ std::vector<KeyframeId> neighboursOf(const MapUncertaintyOptions& options, const
   });
   if (static_cast<int>(neighbours.size()) > options.neighbours)
     neighbours.resize(static_cast<std::size_t>(options.neighbours));
+  const KeyframeId before = options.wheels ? keyframeBefore(map, keyframe) : -1;
+  if (before >= 0 && std::find(neighbours.begin(), neighbours.end(), before) == neighbours.end())
+    neighbours.push_back(before);
   return neighbours;
 }
 

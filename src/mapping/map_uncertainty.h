@@ -1,11 +1,15 @@
 // Beyond the paper: how far the map itself may have drifted. Tracking knows its pose in the map far better than the map
 // knows where it is: each keyframe was found from those before it. A keyframe's uncertainty is that of the best of the
 // keyframes that it shares points with, carried over to it, and what these points leave open between the two; so a
-// keyframe that sees old points again is as certain as they are.
+// keyframe that sees old points again is as certain as they are. Wheels tie it to the keyframe before where points do
+// not.
 #pragma once
+
+#include <optional>
 
 #include "geometry/camera.h"
 #include "map/map.h"
+#include "wheels/wheel_motion.h"
 
 namespace edgeslam {
 
@@ -21,6 +25,7 @@ struct MapUncertaintyOptions {
   double position_walk = 0.008;  // share of the scene's depth
   double rotation_walk = 0.01;   // [rad]
   double scale_walk = 0.03;
+  std::optional<WheelOptions> wheels;  // beneath the camera; none: the camera alone
 };
 
 // Gives the latest keyframe its uncertainty, from the others'.

@@ -5,6 +5,7 @@
 
 #include "mapping/line_association.h"
 #include "mapping/line_placement.h"
+#include "mapping/wheel_turn_check.h"
 
 namespace edgeslam {
 
@@ -137,6 +138,7 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   keyframe.straight_edges = frame.straight_edges;
   keyframe.images = frame.images;
   keyframe.reason = frame.reason;
+  keyframe.wheels = frame.wheels;
   if (frame.inertia.from >= 0 && frame.inertia.from == latestKeyframeOf(map_, world)) keyframe.inertia = frame.inertia;
   map_.keyframes.push_back(std::move(keyframe));
   associate(map_, candidates_);
@@ -145,6 +147,7 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   placeLines(camera_, options_.local_adjustment.lines, map_);
   adjustLocally(camera_, options_.local_adjustment, map_);
   alignToEarth();
+  scaleByWheels();
   const std::vector<CulledKeyframe> culled = cullKeyframes(options_.culling, map_, candidates_);
   culled_.insert(culled_.end(), culled.begin(), culled.end());
   addUncertainty(camera_, options_.uncertainty, map_);
@@ -179,6 +182,33 @@ void Mapper::alignToEarth() {
     adjustGlobally(camera_, options_.global_adjustment, options_.local_adjustment, map_);
     if (was_found && std::abs(alignment.metres_a_unit - before) < settled * before) return;
   }
+}
+
+const WheelScale* Mapper::knownWheelScale() const {
+  const auto found = map_.wheels.find(world_);
+  return found != map_.wheels.end() && found->second.is_known ? &found->second : nullptr;
+}
+
+std::string Mapper::contradictionOfWheels() const {
+  const std::optional<WheelOptions>& wheels = options_.local_adjustment.wheels;
+  return wheels ? turnContradiction(*wheels, map_, world_) : "";
+}
+
+// Once it is known, the whole world is adjusted by it. From then on the map follows it, not it the map, whose scale
+// drifts; how far they are apart makes it less certain.
+void Mapper::scaleByWheels() {
+  if (!options_.local_adjustment.wheels) return;
+  WheelScale& scale = map_.wheels[world_];
+  const WheelScaleEstimate estimate =
+      estimateWheelScale(*options_.local_adjustment.wheels, options_.wheel_scale, map_, world_);
+  lacking_for_wheels_ = scale.is_known ? "" : estimate.lacking;
+  if (!estimate.scale.is_known) return;
+  if (scale.is_known) {
+    scale.sigma = std::hypot(estimate.scale.sigma, std::log(estimate.scale.metres_a_unit / scale.metres_a_unit));
+    return;
+  }
+  scale = estimate.scale;
+  adjustGlobally(camera_, options_.global_adjustment, options_.local_adjustment, map_);
 }
 
 RecoveryResult Mapper::recover(const TrackedFrame& lost) {

@@ -17,6 +17,7 @@
 #include "mapping/new_points.h"
 #include "mapping/track_loss_recovery.h"
 #include "mapping/view_of_map.h"
+#include "mapping/wheel_scale_estimate.h"
 
 namespace edgeslam {
 
@@ -31,6 +32,7 @@ struct MapperOptions {
   ViewOptions view;
   MapUncertaintyOptions uncertainty;
   InertialAlignmentOptions inertial_alignment;  // with local_adjustment.inertia
+  WheelScaleOptions wheel_scale;                // with local_adjustment.wheels
 };
 
 struct WorldPose {
@@ -86,6 +88,12 @@ class Mapper {
   WorldPose inWorldOfToday(WorldPose pose) const;
   // How the world that tracking is in lies to the earth; null where that is not known.
   const InertialAlignment* knownAlignment() const;
+  // How many metres a unit of it is, by the wheels; null where that is not known.
+  const WheelScale* knownWheelScale() const;
+  // Why not; empty where it is, or there are no wheels.
+  const std::string& lackingForWheels() const { return lacking_for_wheels_; }
+  // What is amiss between the camera and the wheels; or empty.
+  std::string contradictionOfWheels() const;
   // Why it is not known how the world lies to the earth; empty where it is, or there is no inertial unit.
   const std::string& lackingForInertia() const { return lacking_; }
   // Poses of the frames before their maps stood, with the worlds as they are now.
@@ -107,6 +115,7 @@ class Mapper {
   void makeRoomFor(KeyframeId keyframe);
   bool addKeyframe(const TrackedFrame& frame);
   void alignToEarth();
+  void scaleByWheels();
 
   Camera camera_;
   MapperOptions options_;
@@ -115,6 +124,7 @@ class Mapper {
   Candidates candidates_;
   std::string first_description_, description_;
   std::string lacking_;
+  std::string lacking_for_wheels_;
   bool initialised_ = false;
   bool start_stood_ = false;  // the latest one
   int world_ = -1;

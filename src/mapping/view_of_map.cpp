@@ -88,6 +88,7 @@ MapView viewOfMap(const Map& map, KeyframeId centre, const ViewOptions& options)
   MapView view;
   view.world = map.keyframes[centre].world;
   if (const auto known = map.inertia.find(view.world); known != map.inertia.end()) view.inertia = known->second;
+  if (const auto known = map.wheels.find(view.world); known != map.wheels.end()) view.wheels = known->second;
   view.centre = centre;
   for (const Keyframe& keyframe : map.keyframes) {
     if (keyframe.world != view.world) continue;

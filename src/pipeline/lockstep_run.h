@@ -27,6 +27,8 @@ class LockstepRun {
 
   // What the inertial unit measured until the next frame, in order; and the first that was measured after it.
   void add(const InertialSample& sample) { tracking_.add(sample); }
+  // Where the wheels say that the robot was, likewise.
+  void add(const OdometryPose& pose) { tracking_.add(pose); }
   // The next frame, CV_8U of the camera's size. Returns its record, without the final pose.
   const FrameRecord& process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey);
   // A frame that could not be read.

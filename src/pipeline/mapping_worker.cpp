@@ -48,7 +48,8 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
     return update;
   }
   const std::size_t worlds_given_up = mapper_.startsGivenUp();
-  const bool was_initialised = mapper_.initialised(), was_metric = mapper_.knownAlignment() != nullptr;
+  const bool was_initialised = mapper_.initialised(), was_metric = mapper_.knownAlignment() != nullptr,
+             was_scaled = mapper_.knownWheelScale() != nullptr;
   const bool has_changed = mapper_.add(message.frame);
   if (mapper_.startsGivenUp() > worlds_given_up) first_valid_message_ = message.number;
   if (!has_changed) return std::nullopt;
@@ -56,6 +57,11 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
     report(last_frame_)
         .events.push_back("map " + std::to_string(mapper_.world()) +
                           " begins beside those before: " + mapper_.latestDescription());
+  }
+  if (const WheelScale* known = mapper_.knownWheelScale(); known && !was_scaled) {
+    report(last_frame_)
+        .events.push_back(formatted("the wheels tell metres: a map unit is %.3f m +- %.1f %%", known->metres_a_unit,
+                                    100 * known->sigma));
   }
   if (const InertialAlignment* known = mapper_.knownAlignment(); known && !was_metric) {
     report(last_frame_)

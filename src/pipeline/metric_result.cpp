@@ -26,33 +26,41 @@ void makeMetric(const Similarity& metric, int world, FrameRecord& frame) {
   if (frame.has_odometry) frame.odom_T_camera.translation *= metric.scale;
 }
 
+void makeMetric(const Similarity& metric, int world, RunResult& result) {
+  for (FrameRecord& frame : result.frames) makeMetric(metric, world, frame);
+  for (KeyframeRecord& keyframe : result.keyframes) {
+    if (keyframe.world == world) keyframe.world_T_camera = moved(metric, keyframe.world_T_camera);
+  }
+  for (MapPointRecord& point : result.map_points) {
+    if (point.world != world) continue;
+    point.position = metric * point.position;
+    point.edge_direction = metric.rotation * point.edge_direction;
+  }
+  for (MapLineRecord& line : result.map_lines) {
+    if (line.world != world) continue;
+    line.from = metric * line.from;
+    line.to = metric * line.to;
+  }
+  if (world != result.main_world) return;
+  for (ClosedLoop& loop : result.closed_loops) {
+    for (auto* poses : {&loop.before, &loop.after}) {
+      for (TimedPose& pose : *poses) pose.world_T_camera = moved(metric, pose.world_T_camera);
+    }
+  }
+}
+
 }  // namespace
 
 void makeMetric(const Map& map, RunResult& result) {
   for (const auto& [world, alignment] : map.inertia) {
     if (!alignment.is_known) continue;
     result.inertia[world] = alignment;
-    const Similarity metric = metricOf(alignment);
-    for (FrameRecord& frame : result.frames) makeMetric(metric, world, frame);
-    for (KeyframeRecord& keyframe : result.keyframes) {
-      if (keyframe.world == world) keyframe.world_T_camera = moved(metric, keyframe.world_T_camera);
-    }
-    for (MapPointRecord& point : result.map_points) {
-      if (point.world != world) continue;
-      point.position = metric * point.position;
-      point.edge_direction = metric.rotation * point.edge_direction;
-    }
-    for (MapLineRecord& line : result.map_lines) {
-      if (line.world != world) continue;
-      line.from = metric * line.from;
-      line.to = metric * line.to;
-    }
-    if (world != result.main_world) continue;
-    for (ClosedLoop& loop : result.closed_loops) {
-      for (auto* poses : {&loop.before, &loop.after}) {
-        for (TimedPose& pose : *poses) pose.world_T_camera = moved(metric, pose.world_T_camera);
-      }
-    }
+    makeMetric(metricOf(alignment), world, result);
+  }
+  for (const auto& [world, scale] : map.wheels) {
+    if (!scale.is_known || result.inertia.count(world) > 0) continue;
+    result.wheels[world] = scale;
+    makeMetric({scale.metres_a_unit, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()}, world, result);
   }
 }
 

@@ -117,6 +117,8 @@ RunResult RunRecord::finish(const Mapper& mapper) {
   result_.initialisation = mapper.initialisationDescription();
   result_.main_world = mainWorld();
   result_.lacking_for_inertia = mapper.lackingForInertia();
+  result_.lacking_for_wheels = mapper.lackingForWheels();
+  result_.contradiction_of_wheels = mapper.contradictionOfWheels();
   makeMetric(map, result_);
   return std::move(result_);
 }

@@ -14,6 +14,7 @@
 #include "inertia/inertial_alignment.h"
 #include "pipeline/duration_statistics.h"
 #include "tracking/frame_result.h"
+#include "wheels/wheel_scale.h"
 
 namespace edgeslam {
 
@@ -85,8 +86,11 @@ struct RunResult {
   std::vector<MapLineRecord> map_lines;
   // Worlds whose lengths are metres and whose z is up, by inertia; and how their map lay to that.
   std::map<int, InertialAlignment> inertia;
-  std::string lacking_for_inertia;  // why the last world is none of them; empty where it is, or there was no unit
-  int main_world = 0;               // the one with most final poses; of several the earliest
+  std::map<int, WheelScale> wheels;     // worlds whose lengths are metres, by the wheels; and how long their unit was
+  std::string lacking_for_wheels;       // as of inertia
+  std::string contradiction_of_wheels;  // what is amiss between them and the camera, in words; or empty
+  std::string lacking_for_inertia;      // why the last world is none of them; empty where it is, or there was no unit
+  int main_world = 0;                   // the one with most final poses; of several the earliest
   std::vector<DrawnFrame> drawings;
   std::vector<std::string> events;  // recoveries, relocalisations, loops accepted and refused: "frame 120: ..."
   int recoveries = 0;               // P21

@@ -38,6 +38,12 @@ struct RecordingSpace {
   double kept_free_megabytes = 256;
 };
 
+// Of the wheels' odometry beside recorded frames.
+struct WheelSettings {
+  bool enabled = false;
+  bool planar = false;
+};
+
 struct Settings {
   EdgeOptions edges;          // how edges are found, in every image
   PointChoiceOptions points;  // how points are chosen and measured, in every image
@@ -53,12 +59,20 @@ struct Settings {
   int correction_delay_keyframes = 1;
   ThreadOptions threads;
   RecordingSpace recording;
+  WheelSettings wheels;
 };
 
 // What an inertial unit measures, which is fixed to the camera, is used.
 inline void useInertia(const InertialUnit& unit, Settings& settings) {
   settings.tracking.inertia = unit;
   settings.mapping.local_adjustment.inertia = unit;
+}
+
+// The wheels beneath the camera are used.
+inline void useWheels(const WheelOptions& wheels, Settings& settings) {
+  settings.tracking.wheels = wheels;
+  settings.mapping.local_adjustment.wheels = wheels;
+  settings.mapping.uncertainty.wheels = wheels;
 }
 
 }  // namespace edgeslam

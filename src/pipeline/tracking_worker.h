@@ -23,6 +23,8 @@ class TrackingWorker {
 
   // What the inertial unit measured, in order.
   void add(const InertialSample& sample) { tracker_.add(sample); }
+  // Where the wheels say that the robot was, likewise.
+  void add(const OdometryPose& pose) { tracker_.add(pose); }
 
   // The next frame, CV_8U of the camera's size; `messages` gets what mapping is to know, nothing where it is
   // `mapping_busy`, so far behind that it can be told nothing. The result holds until the next frame. Once running,

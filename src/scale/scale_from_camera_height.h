@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "geometry/scale_estimate.h"
 #include "scale/ground_plane.h"
-#include "scale/scale_estimate.h"
 #include "scale/scale_options.h"
 
 namespace edgeslam {

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "scale/utime.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "files/format_text.h"
-#include "scale/utime.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 namespace {
@@ -119,7 +119,7 @@ void ScaleFromOdometry::pair() {
   while (!waiting_.empty() && history_.newest() && utimeOf(waiting_.front().time_ns) <= *history_.newest()) {
     const MeasuredPose frame = waiting_.front();
     waiting_.pop_front();
-    if (const std::optional<OdometryHistory::At> body = history_.at(utimeOf(frame.time_ns))) advance({frame, *body});
+    if (const std::optional<OdometryPlace> body = history_.at(utimeOf(frame.time_ns))) advance({frame, *body});
   }
 }
 

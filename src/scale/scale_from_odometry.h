@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
+#include "geometry/scale_estimate.h"
 #include "scale/measured_pose.h"
-#include "scale/odometry_history.h"
-#include "scale/scale_estimate.h"
 #include "scale/scale_options.h"
+#include "wheels/odometry_history.h"
 
 namespace edgeslam {
 
@@ -49,7 +49,7 @@ class ScaleFromOdometry {
  private:
   struct Paired {
     MeasuredPose frame;
-    OdometryHistory::At body;
+    OdometryPlace body;
   };
 
   void pair();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "scale/gradual_scale.h"
 #include "scale/scale_from_camera_height.h"
 #include "scale/scale_from_odometry.h"
 #include "tracking/frame_result.h"

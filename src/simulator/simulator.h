@@ -44,6 +44,8 @@ struct SimulationOptions {
   std::vector<FrameRange> turned;   // turned on the spot, to the side and back ...
   double turn_deg = 40;             // ... so far
   bool inertia = false;             // an inertial unit is on the camera
+  bool wheels = false;              // a robot on wheels carries it ...
+  std::vector<FrameRange> slipped;  // ... which spin
 };
 
 struct SimulatedFrame {

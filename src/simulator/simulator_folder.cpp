@@ -14,6 +14,7 @@
 #include "files/format_text.h"
 #include "files/text_file.h"
 #include "simulator/inertial_simulation.h"
+#include "simulator/wheel_simulation.h"
 
 namespace edgeslam {
 namespace {
@@ -77,6 +78,9 @@ void writeContents(const SimulatedSequence& sequence, const fs::path& folder,
                 formatTrajectory(trajectory));
   writeFile(folder / "camera.yaml", formatCalibration(sequence.camera, sequence.options));
   writeFile(folder / "surfaces.txt", formatSurfaces(sequence.scene.scene));
+  if (sequence.options.wheels) {
+    writeFile(folder / "wheel_odometry.txt", formatWheelOdometry(simulateWheels(sequence)));
+  }
   if (!sequence.options.inertia) return;
   writeFile(folder / "imu.csv", formatInertialSamples(simulateInertia(sequence)));
   writeFile(folder / "imu.yaml", formatInertialUnit(simulatedUnit()));
@@ -120,7 +124,8 @@ void writeSequence(const SimulatedSequence& sequence, const std::string& folder_
   fs::create_directories(partial.path / "rgb", error);
   if (error) throw writeError(folder, error.value());
   writeContents(sequence, partial.path, progress);
-  for (const char* name : {"rgb", "rgb.txt", "groundtruth.txt", "camera.yaml", "surfaces.txt", "imu.csv", "imu.yaml"}) {
+  for (const char* name : {"rgb", "rgb.txt", "groundtruth.txt", "camera.yaml", "surfaces.txt", "imu.csv", "imu.yaml",
+                           "wheel_odometry.txt"}) {
     fs::remove_all(folder / name, error);
     if (!error && fs::exists(partial.path / name)) fs::rename(partial.path / name, folder / name, error);
     if (error) throw writeError(folder / name, error.value());

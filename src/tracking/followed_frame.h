@@ -23,6 +23,8 @@ struct FollowedFrame {
   double outlier_share = 0;                // of the map points in view
   double scene_depth = 1;                  // median distance of the map points that the last frame saw [map units]
   bool position_is_held = false;           // the map does not tell it (orientation_only.h)
+  bool is_by_wheels = false;               // its pose is by the wheels alone
+  OdometryPlace wheels;                    // where the wheels say that it is
   NoiseEvidence noise;                     // what the map points in view say, be the pose believed or not
 
   // False before the first frame, and after forget().

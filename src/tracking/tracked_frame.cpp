@@ -19,6 +19,7 @@ void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole&
   description.world = role.world;
   description.start = role.start;
   description.inertia = InertialLink();
+  description.wheels = frame.wheels;
   description.images = role.kind == FrameKind::start ? nullptr : frame.images;
   description.straight_edges.assign(frame.straight_edges.begin(), frame.straight_edges.end());
   description.observations.clear();

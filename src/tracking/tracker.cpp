@@ -83,6 +83,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       location_(camera, locationOptions(options)),
       keyframes_(camera, options.keyframes, points),
       inertia_(options.inertia),
+      wheels_(options.wheels),
       noise_(options.noise),
       scratch_memory_(new std::byte[scratch_size]),
       scratch_(scratch_memory_.get(), scratch_size),
@@ -111,6 +112,8 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   Work work{time_ns, mapping_busy, result, for_mapping, StageClock(result.times)};
 
   const bool is_sharp = preparation_.prepare(frame_index, time_ns, grey, frame_, work.clock);  // P1 to P4
+  frame_.wheels = wheels_.at(time_ns);
+  frame_.is_by_wheels = false;
   const double without_s = lost_since_ns_ < 0 ? 0 : static_cast<double>(time_ns - lost_since_ns_) * 1e-9;
   const bool any_will_do = !mapStands() || is_lost_ || without_s > options_.blur_gate.longest_rejection_s;
   if (!is_sharp && !any_will_do) {
@@ -121,7 +124,7 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   if (isToBeginWorld(time_ns)) beginWorld();
   if (!mapStands() && !last_.isThere()) return startMap("first frame of the map", work);
 
-  bool located = locate(work);  // P5, P6, P16
+  bool located = place(work);  // P5, P6, P16
   measureNoise(work.result);
   if (!mapStands() && (!located || (tooFewAreLeft() && !goOnFromSpare()))) {
     return startMap("starting anew: too few of the first frame's points are left", work);  // P13
@@ -169,6 +172,43 @@ bool Tracker::locate(Work& work) {
   return location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
 }
 
+// By the map's points, or else by the wheels; these also where the points tell how the camera turned, but not where it
+// is.
+bool Tracker::place(Work& work) {
+  frame_.is_by_wheels = false;
+  if (!locate(work)) return goOnByWheels(work.time_ns);
+  if (!frame_.position_is_held || options_.map_is_frozen) return true;
+  if (const std::optional<WheelPrediction> carried = carriedByWheels(work.time_ns)) {
+    frame_.world_T_camera.translation = carried->world_T_camera.translation;
+    bePlacedByWheels(carried->covariance);
+  }
+  return true;
+}
+
+void Tracker::bePlacedByWheels(const Matrix6d& covariance) {
+  lost_reason_.clear();
+  describe(figures_, lost_reason_);
+  frame_.is_by_wheels = true;
+  frame_.position_is_held = false;
+  frame_.covariance = covariance;
+}
+
+// A frame that shows something, but nothing of the map, is where the wheels say: the map grows on from it.
+bool Tracker::goOnByWheels(std::int64_t time_ns) {
+  if (options_.map_is_frozen) return false;
+  const std::optional<WheelPrediction> carried = carriedByWheels(time_ns);
+  const auto edges = [](const FollowedFrame& frame) { return static_cast<double>(frame.edges->points.size()); };
+  if (!carried || edges(frame_) < options_.wheels_only.fewest_edges * edges(last_)) return false;
+  bePlacedByWheels(carried->covariance);
+  frame_.world_T_camera = carried->world_T_camera;
+  frame_.twist.setZero();
+  frame_.inlier_count = 0;
+  frame_.outlier_share = 0;
+  frame_.scene_depth = last_.scene_depth;
+  reuseMap(frame_);
+  return true;
+}
+
 // What is measured from now on, and what was measured already and is looked at again, counts as it says.
 void Tracker::measureNoise(FrameResult& result) {
   if (saysSomething(frame_.noise)) result.measured_noise = noise_.factor() * frame_.noise.ratio;
@@ -212,7 +252,7 @@ bool Tracker::goOnFromSpare() {
 
 bool Tracker::isToBeginWorld(std::int64_t time_ns) const {
   if (!options_.worlds_enabled || options_.map_is_frozen || !mapStands() || lost_since_ns_ < 0) return false;
-  return !isLostBriefly(time_ns);
+  return !isLostBriefly(time_ns) && !carriedByWheels(time_ns);
 }
 
 // What was there is no longer tracked, but is looked for.
@@ -224,6 +264,7 @@ void Tracker::beginWorld() {
   last_.forget();
   inertia_.forget();
   inertia_.forgetLink();
+  wheels_.forget();
   keyframes_.beginWorld();
 }
 
@@ -252,6 +293,7 @@ bool Tracker::startMap(const char* reason, Work& work) {
   faded_frames_ = 0;
   motion_.forget();
   inertia_.forget();
+  wheels_.forget();
   inertia_.beginStart(work.for_mapping.keyframe, work.time_ns);
   std::swap(last_, frame_);
   return true;
@@ -268,7 +310,7 @@ bool Tracker::selectKeyframe(bool& located, Work& work) {
       return true;
     case KeyframeChoice::previous_frame:
       becomeKeyframe(last_, decision.reason, work);
-      located = locate(work);
+      located = place(work);
       return true;
   }
   return false;
@@ -348,6 +390,7 @@ void Tracker::tell(Work& work) {
     result.reason.assign("orientation only, the position is held: ");
     result.reason.append(std::to_string(frame_.inlier_count)).append(" map points in view agree");
   }
+  if (frame_.is_by_wheels) result.reason.assign("wheels only: ").append(lost_reason_);
   result.world = last_world_ = view_.world;
   result.inertia = view_.inertia;
   result.world_covariance = worldCovariance(camera_, withSharedNoise(frame_.covariance), map_covariance_,
@@ -378,6 +421,12 @@ void Tracker::remember() {
   motion_.observe(lastCamera(), {frame_.images->time_ns, frame_.world_T_camera});
   inertia_.observe({frame_.images->time_ns, frame_.world_T_camera},
                    std::sqrt(withSharedNoise(frame_.covariance).topLeftCorner<3, 3>().trace() / 3));
+  if (!frame_.is_by_wheels) {
+    wheels_.observe({frame_.images->time_ns, frame_.world_T_camera}, frame_.covariance, view_.wheels);
+    located_place_ = frame_.wheels;
+    located_covariance_ = frame_.covariance;
+    located_ns_ = frame_.images->time_ns;
+  }
   if (!options_.map_is_frozen) keyframes_.follow(frame_);
   std::swap(last_, frame_);
 }
@@ -404,10 +453,14 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult
   result.world_covariance = worldCovariance(camera_, withSharedNoise(result.covariance), map_covariance_,
                                             last_.outlier_share, options_.uncertainty);
   goOnByInertia(prediction, result);
+  goOnByWheels(result);
 }
 
-// By inertia where it was measured, else as the camera moved on.
+// By the wheels or inertia where these were measured, else as the camera moved on.
 InertialPrediction Tracker::predictedCamera(std::int64_t time_ns) const {
+  if (const std::optional<WheelPrediction> by_wheels = predictedByWheels(time_ns)) {
+    return {by_wheels->world_T_camera, by_wheels->covariance, false};
+  }
   const double seconds = static_cast<double>(time_ns - last_.images->time_ns) * 1e-9;
   const InertialPrediction by_camera{motion_.predict(lastCamera(), time_ns),
                                      MotionModel::predictedCovariance(last_.covariance, seconds), false};
@@ -431,6 +484,43 @@ void Tracker::goOnByInertia(const InertialPrediction& prediction, FrameResult& r
   result.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * result.world_T_camera;
 }
 
+std::optional<WheelPrediction> Tracker::predictedByWheels(std::int64_t time_ns) const {
+  if (!options_.wheels || last_.wheels.piece < 0) return std::nullopt;
+  const double seconds = static_cast<double>(time_ns - last_.images->time_ns) * 1e-9;
+  const WheelPrediction by_camera{motion_.predict(lastCamera(), time_ns),
+                                  MotionModel::predictedCovariance(last_.covariance, seconds), false, false};
+  return wheels_.predict({lastCamera(), last_.wheels, located_place_, located_covariance_}, time_ns, view_.wheels,
+                         by_camera);
+}
+
+// A pose by the wheels is as good as its covariance says, unless what the camera sees contradicts them.
+std::optional<WheelPrediction> Tracker::carriedByWheels(std::int64_t time_ns) const {
+  if (!last_.isThere() || !mapStands() || view_.keyframes.empty()) return std::nullopt;
+  std::optional<WheelPrediction> prediction = predictedByWheels(time_ns);
+  if (!prediction || !prediction->knows_position) return std::nullopt;
+  const WheelsOnlyOptions& options = options_.wheels_only;
+  const Matrix6d& covariance = prediction->covariance;
+  if (static_cast<double>(time_ns - located_ns_) * 1e-9 > options.longest_s ||
+      std::sqrt(covariance.diagonal().head<3>().maxCoeff()) > options.largest_position_deviation * last_.scene_depth ||
+      std::sqrt(covariance.diagonal().tail<3>().maxCoeff()) > options.largest_rotation_deviation) {
+    return std::nullopt;
+  }
+  const bool is_of_frame = frame_.isThere() && frame_.images->time_ns == time_ns && frame_.edges && last_.edges;
+  const bool image_changed =
+      is_of_frame && static_cast<double>(frame_.edges->points.size()) >=
+                         options.contradicting_edges * static_cast<double>(last_.edges->points.size());
+  if (prediction->stood && image_changed) return std::nullopt;
+  return prediction;
+}
+
+void Tracker::goOnByWheels(FrameResult& result) const {
+  if (isGoodPose(result.state) || !carriedByWheels(result.time_ns)) return;
+  result.state = TrackingState::tracking;
+  result.reason.insert(0, result.reason.empty() ? "wheels only" : "wheels only: ");
+  result.reference = view_.keyframes.back().id;
+  result.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * result.world_T_camera;
+}
+
 void Tracker::lose(Work& work) {
   FrameResult& result = work.result;
   lost_reason_.clear();
@@ -438,7 +528,7 @@ void Tracker::lose(Work& work) {
   predict(work.time_ns, lost_reason_, result);
   beLostSince(work.time_ns);
   frame_is_lost_ = is_lost_ = true;
-  if (isGoodPose(result.state)) return;  // by inertia
+  if (isGoodPose(result.state)) return;  // by inertia or the wheels
   // What a frozen map does not show is bridged; a map that grows shows what was there a moment ago.
   if (options_.map_is_frozen && result.has_pose && isLostBriefly(work.time_ns)) return;
   result.state = TrackingState::lost;
@@ -495,6 +585,11 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   std::swap(view_, view);
   motion_.forget();
   inertia_.forget();
+  wheels_.forget();
+  last_.is_by_wheels = false;
+  located_place_ = last_.wheels;
+  located_covariance_ = covariance;
+  located_ns_ = last_.images->time_ns;
   if (view_.keyframes.contains(kept_number_)) inertia_.linkFrom(kept_number_, last_.images->time_ns);
   is_lost_ = false;
   lost_since_ns_ = -1;
@@ -528,11 +623,15 @@ void Tracker::adopt(MapView& view) {
     view.keyframes.push_back({keyframe.id, moved(*new_S_old, keyframe.world_T_camera), nullptr, Matrix7d::Zero(),
                               moved(*new_S_old, keyframe.twist)});
   }
+  if (view.corrections != view_.corrections || view.wheels.is_known != view_.wheels.is_known) wheels_.forget();
   std::swap(view_, view);
   centre_ = view_.centre;  // what was asked for meanwhile is asked for once more
   tracks_at_reuse_ = 0;
   motion_.scale(new_S_old->scale);
-  if (new_S_old->scale != 1) inertia_.forget();
+  if (new_S_old->scale != 1) {
+    inertia_.forget();
+    wheels_.forget();
+  }
   const Pose moved_pose = moved(*new_S_old, last_.world_T_camera);
   if (is_first) {
     ++worlds_;
@@ -548,7 +647,8 @@ void Tracker::adopt(MapView& view) {
   motion.before = last_.twist;
   const FramePose again =
       estimatePose(camera_, view_, last_.tracks, moved_pose, options_.location.pose, &scratch_, motion);
-  last_.world_T_camera = again.result.converged ? again.result.world_T_camera : moved_pose;
+  const bool is_measured = again.result.converged && !last_.is_by_wheels;
+  last_.world_T_camera = is_measured ? again.result.world_T_camera : moved_pose;
 }
 
 }  // namespace edgeslam

@@ -23,6 +23,7 @@
 #include "tracking/keyframe_making.h"
 #include "tracking/map_reuse.h"
 #include "tracking/measured_noise.h"
+#include "tracking/motion_by_wheels.h"
 #include "tracking/motion_model.h"
 #include "tracking/spare_start.h"
 #include "tracking/stage_times.h"
@@ -36,6 +37,17 @@ struct InertiaOnlyOptions {
   double longest_s = 2;                      // since a frame was located
   double largest_position_deviation = 0.1;   // standard deviation, share of the scene's distance
   double largest_rotation_deviation = 0.05;  // [rad]
+};
+
+// Likewise by wheels, and frames in which none of the map is found.
+struct WheelsOnlyOptions {
+  double longest_s = 20;                     // since a frame was located
+  double largest_position_deviation = 0.3;   // standard deviation, share of the scene's distance
+  double largest_rotation_deviation = 0.12;  // [rad]
+  // A frame with so many of the edges that the last one had, share of them, shows that wheels which stood are wrong.
+  double contradicting_edges = 0.5;
+  // With fewer edges than so many of the last one's, share of them, a frame shows nothing to go on from.
+  double fewest_edges = 0.2;
 };
 
 struct TrackerOptions {
@@ -53,6 +65,8 @@ struct TrackerOptions {
   double regain_seconds = 0.7;  // so long after a loss the last tracked frame's points are still looked for
   std::optional<InertialUnit> inertia;  // that goes with the camera; none: the camera alone
   InertiaOnlyOptions inertia_only;
+  std::optional<WheelOptions> wheels;  // beneath the camera; none: the camera alone
+  WheelsOnlyOptions wheels_only;
   bool worlds_enabled = true;
   // So long after a loss a new world is begun beside those that were lost, or, in a frozen map, poses are no longer
   // predicted.
@@ -74,6 +88,9 @@ class Tracker {
 
   // What the inertial unit measured, in order; before the frames that were taken until then.
   void add(const InertialSample& sample) { inertia_.add(sample); }
+
+  // Where the wheels say that the robot was, likewise.
+  void add(const OdometryPose& pose) { wheels_.add(pose); }
 
   // `grey`: CV_8U of the camera's size. Frames come in the order of their time stamps. `mapping_busy`: it can be told
   // nothing now, so that this frame becomes no keyframe. `result` is written over. True where mapping is to be told
@@ -128,6 +145,9 @@ class Tracker {
   TimedCamera lastCamera() const { return {last_.images->time_ns, last_.world_T_camera}; }
 
   bool locate(Work& work);
+  bool place(Work& work);
+  bool goOnByWheels(std::int64_t time_ns);
+  void bePlacedByWheels(const Matrix6d& covariance);
   void measureNoise(FrameResult& result);
   bool isToBeginWorld(std::int64_t time_ns) const;
   void beginWorld();
@@ -149,6 +169,9 @@ class Tracker {
   void remember();
   InertialPrediction predictedCamera(std::int64_t time_ns) const;
   void predict(std::int64_t time_ns, std::string_view reason, FrameResult& result) const;
+  std::optional<WheelPrediction> predictedByWheels(std::int64_t time_ns) const;
+  std::optional<WheelPrediction> carriedByWheels(std::int64_t time_ns) const;
+  void goOnByWheels(FrameResult& result) const;
   void goOnByInertia(const InertialPrediction& prediction, FrameResult& result) const;
   void lose(Work& work);
   void linkFromLatestKeyframe();
@@ -163,13 +186,17 @@ class Tracker {
   KeyframeMaking keyframes_;
   MotionModel motion_;
   InertialMotion inertia_;
+  MotionByWheels wheels_;
   MeasuredNoise noise_;
   std::unique_ptr<std::byte[]> scratch_memory_;  // as much of it takes room as was ever used
   std::pmr::monotonic_buffer_resource scratch_;  // what one frame needs on the way
 
   MapView view_;
-  FollowedFrame frame_;  // the current one
-  FollowedFrame last_;   // the last frame that was located
+  FollowedFrame frame_;                             // the current one
+  FollowedFrame last_;                              // the last frame that was located
+  OdometryPlace located_place_;                     // of the last frame that the camera located ...
+  Matrix6d located_covariance_ = Matrix6d::Zero();  // ... with this covariance ...
+  std::int64_t located_ns_ = 0;                     // ... then
   LocationFigures figures_;
   std::string lost_reason_;
   FollowedFrame kept_;           // a lost frame that others look for

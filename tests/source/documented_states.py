@@ -19,6 +19,7 @@ SOURCES = {
     "src/pipeline/tracking_worker.cpp": [],
     "src/pipeline/mapping_worker.cpp": [  # events
         "map ", " begins beside those before: ", "recovered from three keyframes, ", " points", "relocalised at keyframe ",
+        "the wheels tell metres: a map unit is %.3f m +- %.1f %%",
         "the inertial unit tells metres and upright: a map unit is %.3f m +- %.1f %%"],
     "src/mapping/initialisation.cpp": [" from frame ", " to frame ", ", "],  # what the start was
     "src/mapping/initialisation.h": [],
@@ -30,7 +31,7 @@ SOURCES = {
     "src/map/map_view.cpp": [],
     "src/scale/ground_plane.cpp": [],
     "src/frames/frame_problem.cpp": [],
-    "src/scale/scale_estimate.cpp": [],
+    "src/geometry/scale_estimate.cpp": [],
     "src/scale/scale_from_camera_height.cpp": [],
     "src/scale/scale_from_odometry.cpp": [],
     "src/scale/scale_search.cpp": ["odometry", "camera_height"],  # values of scale.source

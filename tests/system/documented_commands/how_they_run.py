@@ -34,12 +34,12 @@ INSTEAD = {
         "it waits for a browser, and the usual port may be taken", ["edgeslam view failure --port 0"],
         until="the page is at http://127.0.0.1:"),
     "edgeslam replay INPUT [--config FILE] [--output DIR] [--map-in FILE] [--map-out FILE] "
-    "[--imu] [--realtime [--pace N] [--record DIR] [--lcm]] [--drawings N]": Instead(
+    "[--imu|--wheels] [--realtime [--pace N] [--record DIR] [--lcm]] [--drawings N]": Instead(
         SYNOPSIS, ["edgeslam replay my_recording --config my_robot.yaml --output r1 --map-in saved.map --map-out new.map "
                    "--drawings 2",
                    "edgeslam replay my_recording --output r2 --realtime --pace 4 --record r2_recorded --lcm",
-                   "edgeslam simulate panels_textured --output with_inertia --width 320 --height 240 --frames 90 --imu",
-                   "edgeslam replay with_inertia --imu --output r3"]),
+                   "edgeslam simulate panels_textured --output with_inertia --width 320 --height 240 --frames 90 --imu --wheels",
+                   "edgeslam replay with_inertia --imu --output r3", "edgeslam replay with_inertia --wheels --output r4"]),
     "edgeslam replay DIR": Instead(PLACEHOLDERS, ["edgeslam replay my_recording"]),
     "edgeslam replay RECORDING --realtime --lcm": Instead(
         PLACEHOLDERS, ["edgeslam replay my_recording --realtime --lcm"]),
@@ -55,10 +55,11 @@ INSTEAD = {
                    "edgeslam report all --output all.html"]),
     "edgeslam simulate SCENE --output DIR [--frames N] [--seed N] [--fps F] [--width PX] [--height PX] [--fisheye] "
     "[--exposure MS] [--readout MS] [--noise GREY] [--speed FACTOR] [--cover|--shake|--still|--turn FIRST:COUNT] "
-    "[--turn-angle DEG] [--imu] "
+    "[--turn-angle DEG] [--imu] [--wheels [--slip FIRST:COUNT]] "
     "[--force]": Instead(
         SYNOPSIS, [f"edgeslam simulate {scene} --output made --seed 2 --fps 20 {SMALL} --imu --fisheye --exposure 2 "
-                   "--readout 24 --noise 3 --speed 2 --cover 0:1 --shake 1:1 --still 2:1 --turn 2:1 --turn-angle 60 --force"
+                   "--readout 24 --noise 3 --speed 2 --cover 0:1 --shake 1:1 --still 2:1 --turn 2:1 --turn-angle 60 --wheels "
+                   "--slip 3:1 --force"
                    for scene in ("panels", "panels_textured", "room", "corridor", "corridor_tiled")]),
     "edgeslam calibrate board --columns N --rows N --square LENGTH --output PDF "
     "[--type chessboard|charuco|aprilgrid] [--paper A4]": Instead(

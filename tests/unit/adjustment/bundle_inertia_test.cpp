@@ -1,8 +1,10 @@
-// What an inertial unit says in a bundle adjustment: derivatives, the scale that it holds, and values of no use.
+// What an inertial unit and wheels say in a bundle adjustment: derivatives, the scale that it holds, and values of no
+// use.
 #include "adjustment/bundle_inertia.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "synthetic_bundle.h"
@@ -32,6 +34,10 @@ void addInertia(Random& random, double turn_information, double speed_informatio
     const int now = static_cast<int>(c);
     problem.turns.push_back(
         {now - 1, now, pose(c - 1).rotation.conjugate() * pose(c).rotation, someWhitening(random, turn_information)});
+    problem.ways.push_back({now - 1, now,
+                            problem.inertia.metres_a_unit *
+                                (pose(c - 1).rotation.conjugate() * (pose(c).translation - pose(c - 1).translation)),
+                            someWhitening(random, speed_information)});
     if (c < 2) continue;
     BundleSpeedChange change;
     change.cameras = {now - 2, now - 1, now};
@@ -151,6 +157,7 @@ TEST(BundleInertia, TellsTheScaleThatPointsCannot) {
   BundleProblem seen_only = problem;
   seen_only.turns.clear();
   seen_only.speed_changes.clear();
+  seen_only.ways.clear();
   ASSERT_TRUE(adjustBundle(scene.camera, seen_only, manyIterations()).usable);
   EXPECT_GT(largestTranslationError(seen_only, scene.truth), 0.2);
   ASSERT_TRUE(adjustBundle(scene.camera, problem, manyIterations()).usable);
@@ -163,6 +170,7 @@ TEST(BundleInertia, HoldsTurnsThatLittleIsSeenOf) {
   BundleScene scene = sceneWithInertia(random, 6, 1, 5000);
   BundleProblem& truth = scene.truth;
   truth.speed_changes.clear();
+  truth.ways.clear();
   truth.scale_camera = 5;
   for (BundleObservation& o : truth.observations) {
     o.measurement.sigma_normal = o.measurement.sigma_tangent = 5;
@@ -181,6 +189,7 @@ TEST(BundleInertia, ValuesOfNoUseTakeNoPart) {
   BundleProblem plain = scene.truth;
   plain.turns.clear();
   plain.speed_changes.clear();
+  plain.ways.clear();
   BundleProblem useless = plain;
   useless.turns.assign(1, {1, 1, Eigen::Quaterniond::Identity(), Eigen::Matrix3d::Identity()});
   useless.turns.push_back(
@@ -191,6 +200,9 @@ TEST(BundleInertia, ValuesOfNoUseTakeNoPart) {
   change = scene.truth.speed_changes.front();
   change.of_first.x() = std::numeric_limits<double>::infinity();
   useless.speed_changes.push_back(change);
+  useless.ways.assign(1, {2, 2, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()});
+  useless.ways.push_back(
+      {1, 2, Eigen::Vector3d(0, std::numeric_limits<double>::quiet_NaN(), 0), Eigen::Matrix3d::Identity()});
   plain.scale_camera = useless.scale_camera = -1;
   ASSERT_TRUE(adjustBundle(scene.camera, plain, manyIterations()).usable);
   ASSERT_TRUE(adjustBundle(scene.camera, useless, manyIterations()).usable);
@@ -202,6 +214,26 @@ TEST(BundleInertia, ValuesOfNoUseTakeNoPart) {
   out_of_range = scene.truth;
   out_of_range.turns.front().first = -1;
   EXPECT_FALSE(adjustBundle(scene.camera, out_of_range, manyIterations()).usable);
+  out_of_range = scene.truth;
+  out_of_range.ways.front().second = 6;
+  EXPECT_FALSE(adjustBundle(scene.camera, out_of_range, manyIterations()).usable);
+}
+
+// Before a blank wall.
+TEST(BundleInertia, WheelsPlaceACameraThatSeesNothing) {
+  Random random(6);
+  BundleScene scene = sceneWithInertia(random, 6, 1);
+  BundleProblem& truth = scene.truth;
+  truth.speed_changes.clear();
+  const auto isOfLast = [&](const BundleObservation& o) {
+    return o.camera == 5 || truth.points[static_cast<std::size_t>(o.point)].host == 5;
+  };
+  truth.observations.erase(std::remove_if(truth.observations.begin(), truth.observations.end(), isOfLast),
+                           truth.observations.end());
+  BundleProblem problem = perturbedProblem(random, truth, 0.005, 0.003);
+  ASSERT_TRUE(adjustBundle(scene.camera, problem, manyIterations()).usable);
+  EXPECT_LT(largestTranslationError(problem, truth), 1e-4);
+  EXPECT_LT(largestRotationError(problem, truth), 1e-4);
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "scale/utime.h"
 #include "unit/lcm/made_frames.h"
 #include "unit/visual_odometry/moving_camera.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 namespace {

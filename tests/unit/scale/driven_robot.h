@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "scale/odometry_pose.h"
 #include "unit/lcm/made_frames.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scale/utime.h"
 #include "unit/lcm/made_frames.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 namespace {

@@ -1,8 +1,8 @@
 #include "service/metric_scale.h"
 
-#include "scale/utime.h"
 #include "unit/lcm/made_frames.h"
 #include "unit/service/made_service.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 namespace {

@@ -1,4 +1,4 @@
-#include "scale/odometry_history.h"
+#include "wheels/odometry_history.h"
 
 #include <gtest/gtest.h>
 

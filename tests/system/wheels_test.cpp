@@ -1,0 +1,88 @@
+// Wheels beneath the camera: metres, poses while a hand is on the lens, and wheels that spin.
+#include <gtest/gtest.h>
+
+#include "system/run_result.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr int covered_from = 140, covered_to = 169;  // a second; the wheels spin from 220 on
+
+class Wheels : public testing::Test {
+ protected:
+  ReplayedRun replayedWith(const std::string& name, const std::vector<std::string>& more) const {
+    ReplayedRun run = replayed(input_, folder_.path(name), more);
+    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.messages;
+    return run;
+  }
+  AbsoluteError errorOf(const std::string& name) const {
+    return absoluteError(readTrajectory(folder_.path(name + "/trajectory.txt")),
+                         readTrajectory(input_ + "/groundtruth.txt"), Alignment::similarity);
+  }
+
+  const std::string input_ = std::string(EDGESLAM_RUN_FOLDER) + "/wheeled";
+  const TemporaryFolder folder_;
+};
+
+TEST_F(Wheels, GiveMetresAlsoWhereTheySpin) {
+  const ReplayedRun run = replayedWith("with", {"--wheels"});
+  EXPECT_NE(run.outcome.output.find("lengths are metres"), std::string::npos) << run.outcome.output;
+  const AbsoluteError error = errorOf("with");
+  EXPECT_LT(error.translation.rmse, 0.02);
+  EXPECT_NEAR(error.reference_T_estimate.scale, 1, 0.05);
+}
+
+TEST_F(Wheels, GivePosesWhileTheLensIsCovered) {
+  const ReplayedRun with = replayedWith("with", {"--wheels"}), without = replayedWith("without", {});
+  EXPECT_EQ(with.countGood(covered_from, covered_to), covered_to - covered_from + 1);
+  EXPECT_LT(without.countGood(covered_from, covered_to), 3);
+  const Trajectory truth = readTrajectory(input_ + "/groundtruth.txt");
+  const AbsoluteError error = errorOf("with");
+  double largest_m = 0;
+  for (const StampedPose& pose : readTrajectory(folder_.path("with/trajectory.txt"))) {
+    for (int i = covered_from; i <= covered_to; ++i) {
+      const StampedPose& expected = truth[static_cast<std::size_t>(i)];
+      if (expected.time_ns != pose.time_ns) continue;
+      largest_m = std::max(
+          largest_m,
+          (error.reference_T_estimate * pose.world_T_camera.translation - expected.world_T_camera.translation).norm());
+    }
+  }
+  EXPECT_LT(largest_m, 0.08);
+}
+
+TEST_F(Wheels, GiveTheSameBytesTwice) {
+  replayedWith("once", {"--wheels"});
+  replayedWith("twice", {"--wheels"});
+  for (const char* name : {"/trajectory.txt", "/trajectory_live.txt", "/map.ply"}) {
+    EXPECT_EQ(fileContent(folder_.path(std::string("once") + name)),
+              fileContent(folder_.path(std::string("twice") + name)));
+  }
+}
+
+TEST_F(Wheels, AreNotUsedUnlessAskedFor) {
+  const ReplayedRun run = replayedWith("without", {});
+  EXPECT_NE(run.outcome.messages.find("wheel_odometry.txt is not used; --wheels uses it"), std::string::npos)
+      << run.outcome.messages;
+}
+
+TEST_F(Wheels, ThatAreNotThereOrCannotBeUsedAreSaid) {
+  for (const char* name : {"rgb", "rgb.txt", "camera.yaml"}) {
+    std::filesystem::create_symlink(input_ + "/" + name, folder_.path(name));
+  }
+  const auto refused = [&](const std::string& input, const std::vector<std::string>& more, const std::string& message) {
+    std::vector<std::string> arguments{"replay", input, "--wheels", "--output", folder_.path("no")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = runProgram(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.messages.find(message), std::string::npos) << outcome.messages;
+  };
+  refused(folder_.path(""), {}, "wheel_odometry.txt");
+  refused(input_, {"--realtime"}, "--realtime");
+  refused(input_, {"--imu"}, "--imu");
+  folder_.write("wheel_odometry.txt", "1 2 3\n");
+  refused(folder_.path(""), {}, "wheel_odometry.txt:1: ");
+}
+
+}  // namespace
+}  // namespace edgeslam
