@@ -132,6 +132,7 @@ bool keepScale(const std::vector<BundleCamera>& before, BundleProblem& problem) 
   }
   for (BundleLine& l : problem.lines) l.line.point = origin + scale * (l.line.point - origin);
   for (BundleCamera& c : problem.cameras) c.twist.head<3>() *= scale;
+  if (problem.inertia.is_free) problem.inertia.metres_a_unit /= scale;
   for (BundlePoint& p : problem.points) {
     p.inverse_depth /= scale;
     p.host_origin *= scale;
@@ -168,7 +169,8 @@ bool readBack(const BundleStructure& structure, const BundleState& state, Bundle
     if (!line.point.allFinite() || !line.direction.allFinite()) return false;
     problem.lines[at(structure.lines[i].index)].line = line;
   }
-  return true;
+  if (problem.inertia.is_free) problem.inertia = state.inertia;
+  return std::isfinite(problem.inertia.metres_a_unit) && problem.inertia.bias_change.allFinite();
 }
 
 }  // namespace
@@ -192,14 +194,17 @@ BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const Bu
     const std::vector<BundleCamera> cameras_before = problem.cameras;
     const std::vector<BundlePoint> points_before = problem.points;
     const std::vector<BundleLine> lines_before = problem.lines;
+    const BundleInertia inertia_before = problem.inertia;
     result.usable = readBack(workspace.structure, workspace.state, problem) &&
                     (!scaleIsFree(problem) || keepScale(cameras_before, problem));
     if (result.usable) {
       result.iterations = iterations;
+      if (problem.inertia.is_free) result.inertia_covariance = workspace.solver.inertiaCovariance();
     } else {
       problem.cameras = cameras_before;
       problem.points = points_before;
       problem.lines = lines_before;
+      problem.inertia = inertia_before;
     }
   }
   assess(camera, problem, options.huber, result);

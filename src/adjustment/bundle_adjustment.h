@@ -17,6 +17,8 @@
 
 namespace edgeslam {
 
+using Matrix36d = Eigen::Matrix<double, 3, 6>;
+
 struct BundleCamera {
   Pose world_T_camera;
   bool fixed = false;
@@ -65,6 +67,8 @@ struct BundleTurn {
   Eigen::Quaterniond first_R_second = Eigen::Quaterniond::Identity();
   Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();  // of the rotation vector's error, second camera's frame
   double huber_times = inertial_huber_times;
+  // A bias of the gyroscope that is larger by b [rad/s] turns first_R_second on by exp(by_rate_bias b).
+  Eigen::Matrix3d by_rate_bias = Eigen::Matrix3d::Zero();
 };
 
 // What it says of three cameras one after the other: how the mean speed between the last two differs from that between
@@ -75,6 +79,8 @@ struct BundleSpeedChange {
   Eigen::Vector3d of_first = Eigen::Vector3d::Zero();       // without gravity, first camera's frame [m/s]
   Eigen::Vector3d of_second = Eigen::Vector3d::Zero();      // likewise, second camera's frame [m/s]
   Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();  // of the error [s/m], first camera's frame
+  // How these change with the bias [rate [rad/s]; force [m/s^2]].
+  Matrix36d first_by_bias = Matrix36d::Zero(), second_by_bias = Matrix36d::Zero();
 };
 
 // What wheels say of two cameras: where the second is, as the first one sees it.
@@ -90,7 +96,15 @@ struct BundleInertia {
   double metres_a_unit = 1;                                // of the map
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();       // world frame [m/s^2]
   Eigen::Vector3d camera_t_imu = Eigen::Vector3d::Zero();  // place of the unit in the camera's frame [m]
+  // Scale, gravity's direction and the biases are adjusted, too; the biases from no change, with these deviations.
+  bool is_free = false;
+  Vector6d bias_change = Vector6d::Zero();  // [rate [rad/s]; force [m/s^2]]
+  double rate_bias_sigma = 0, force_bias_sigma = 0;
 };
+
+// Of what is adjusted of inertia: logarithm of the scale, two tilts of gravity [rad], the biases' change.
+using InertiaVector = Eigen::Matrix<double, 9, 1>;
+using InertiaMatrix = Eigen::Matrix<double, 9, 9>;
 
 struct BundleProblem {
   std::vector<BundleCamera> cameras;
@@ -130,6 +144,8 @@ struct BundleResult {
   // Covariance of each line's change (4, as of movedLine()) from where it is afterwards, with the poses held, outliers
   // down-weighed. Variances are at most 1e6, for what is not determined; 0 where the line is unobserved.
   std::vector<Eigen::Matrix4d> line_covariances;
+  // Of what was adjusted of inertia, with all else free; 0 where it was not.
+  InertiaMatrix inertia_covariance = InertiaMatrix::Zero();
   double initial_cost = 0;
   double final_cost = 0;
   int iterations = 0;

@@ -1,19 +1,21 @@
 #include "adjustment/bundle_inertia.h"
 
+#include <Eigen/LU>
 #include <cmath>
+
+#include "geometry/tangents.h"
 
 namespace edgeslam {
 namespace {
 
-using Matrix36d = Eigen::Matrix<double, 3, 6>;
-
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-// Whitened, with the derivatives by the twist of each camera where asked for.
+// Whitened, with the derivatives by the twist of each camera, and by what is adjusted of inertia, where asked for.
 struct Term {
   Eigen::Vector3d residual;
   std::array<Matrix36d, 3> by_twist;
   double huber_times = inertial_huber_times;
+  Eigen::Matrix<double, 3, 9> by_inertia;
 };
 
 struct CameraAt {
@@ -30,8 +32,12 @@ Eigen::Matrix3d inverseRightJacobian(const Eigen::Vector3d& turn) {
   return Eigen::Matrix3d::Identity() + 0.5 * cross + second * cross * cross;
 }
 
-void evaluate(const BundleTurn& turn, const CameraAt& first, const CameraAt& second, Term& term, bool derivatives) {
-  const Eigen::Quaterniond error = turn.first_R_second.conjugate() * first.rotation.conjugate() * second.rotation;
+void evaluate(const BundleInertia& inertia, const BundleTurn& turn, const CameraAt& first, const CameraAt& second,
+              Term& term, bool derivatives) {
+  const Eigen::Quaterniond measured =
+      inertia.is_free ? turn.first_R_second * rotationExp(turn.by_rate_bias * inertia.bias_change.head<3>())
+                      : turn.first_R_second;
+  const Eigen::Quaterniond error = measured.conjugate() * first.rotation.conjugate() * second.rotation;
   const Eigen::Vector3d error_vector = rotationLog(error.normalized());
   term.residual = turn.whitening * error_vector;
   term.huber_times = turn.huber_times;
@@ -40,10 +46,16 @@ void evaluate(const BundleTurn& turn, const CameraAt& first, const CameraAt& sec
   term.by_twist[1].rightCols<3>() =
       turn.whitening * inverseRightJacobian(error_vector) * second.rotation.conjugate().toRotationMatrix();
   term.by_twist[0] = -term.by_twist[1];
+  if (!inertia.is_free) return;
+  term.by_inertia.setZero();
+  const Eigen::Matrix3d bias_turn = inverseRightJacobian(turn.by_rate_bias * inertia.bias_change.head<3>()).inverse();
+  term.by_inertia.middleCols<3>(3) =
+      -turn.whitening * inverseRightJacobian(error_vector).transpose() * bias_turn * turn.by_rate_bias;
 }
 
-void evaluate(double metres_a_unit, const BundleWay& way, const CameraAt& first, const CameraAt& second,
+void evaluate(const BundleInertia& inertia, const BundleWay& way, const CameraAt& first, const CameraAt& second,
               const Eigen::Vector3d& origin, Term& term, bool derivatives) {
+  const double metres_a_unit = inertia.metres_a_unit;
   const Eigen::Vector3d moved = metres_a_unit * (second.centre - first.centre);
   const Eigen::Matrix3d whitening = way.whitening * first.rotation.conjugate().toRotationMatrix();
   term.residual = whitening * moved - way.whitening * way.way;
@@ -53,6 +65,9 @@ void evaluate(double metres_a_unit, const BundleWay& way, const CameraAt& first,
   term.by_twist[1].rightCols<3>() = -metres_a_unit * whitening * skew(second.centre - origin);
   term.by_twist[0].leftCols<3>() = -term.by_twist[1].leftCols<3>();
   term.by_twist[0].rightCols<3>() = whitening * (metres_a_unit * skew(first.centre - origin) + skew(moved));
+  if (!inertia.is_free) return;
+  term.by_inertia.setZero();
+  term.by_inertia.col(0) = whitening * moved;
 }
 
 void evaluate(const BundleInertia& inertia, const BundleSpeedChange& change, const std::array<CameraAt, 3>& cameras,
@@ -61,7 +76,11 @@ void evaluate(const BundleInertia& inertia, const BundleSpeedChange& change, con
   std::array<Eigen::Vector3d, 3> levers;
   for (std::size_t k = 0; k < 3; ++k) levers[k] = cameras[k].rotation * inertia.camera_t_imu;
   const auto place = [&](std::size_t k) -> Eigen::Vector3d { return s * cameras[k].centre + levers[k]; };
-  const Eigen::Vector3d first = cameras[0].rotation * change.of_first, second = cameras[1].rotation * change.of_second;
+  Eigen::Vector3d first = cameras[0].rotation * change.of_first, second = cameras[1].rotation * change.of_second;
+  if (inertia.is_free) {
+    first += cameras[0].rotation * (change.first_by_bias * inertia.bias_change);
+    second += cameras[1].rotation * (change.second_by_bias * inertia.bias_change);
+  }
   // What the first camera sees of the error, so that the whitening is the same however the world is turned.
   const Eigen::Matrix3d whitening = change.whitening * cameras[0].rotation.conjugate().toRotationMatrix();
   const Eigen::Vector3d error =
@@ -78,6 +97,14 @@ void evaluate(const BundleInertia& inertia, const BundleSpeedChange& change, con
   term.by_twist[0].rightCols<3>() += skew(first) + skew(error);
   term.by_twist[1].rightCols<3>() += skew(second);
   for (Matrix36d& by_twist : term.by_twist) by_twist = whitening * by_twist;
+  if (!inertia.is_free) return;
+  term.by_inertia.col(0) =
+      s * ((cameras[2].centre - cameras[1].centre) / t2 - (cameras[1].centre - cameras[0].centre) / t1);
+  term.by_inertia.middleCols<2>(1) =
+      -0.5 * (t1 + t2) * inertia.gravity.norm() * tangentsOf(inertia.gravity.normalized());
+  term.by_inertia.rightCols<6>() = -(cameras[0].rotation.toRotationMatrix() * change.first_by_bias) -
+                                   cameras[1].rotation.toRotationMatrix() * change.second_by_bias;
+  term.by_inertia = (whitening * term.by_inertia).eval();
 }
 
 CameraAt cameraAt(const BundleState& state, int camera) {
@@ -102,20 +129,67 @@ void forEachTerm(const BundleProblem& problem, const BundleStructure& structure,
   Term term;
   for (const StructuredInertia& structured : structure.turns) {
     const BundleTurn& turn = problem.turns[at(structured.index)];
-    evaluate(turn, cameraAt(state, turn.first), cameraAt(state, turn.second), term, derivatives);
+    evaluate(state.inertia, turn, cameraAt(state, turn.first), cameraAt(state, turn.second), term, derivatives);
     function(structured, term);
   }
   for (const StructuredInertia& structured : structure.speed_changes) {
     const BundleSpeedChange& change = problem.speed_changes[at(structured.index)];
-    evaluate(problem.inertia, change, camerasOf(change, state), origin, term, derivatives);
+    evaluate(state.inertia, change, camerasOf(change, state), origin, term, derivatives);
     function(structured, term);
   }
   for (const StructuredInertia& structured : structure.ways) {
     const BundleWay& way = problem.ways[at(structured.index)];
-    evaluate(problem.inertia.metres_a_unit, way, cameraAt(state, way.first), cameraAt(state, way.second), origin, term,
-             derivatives);
+    evaluate(state.inertia, way, cameraAt(state, way.first), cameraAt(state, way.second), origin, term, derivatives);
     function(structured, term);
   }
+}
+
+// What is known of the biases before.
+InertiaVector priorInformation(const BundleInertia& inertia) {
+  InertiaVector information = InertiaVector::Zero();
+  const auto of = [](double sigma) { return sigma > 0 ? 1 / (sigma * sigma) : 0; };
+  information.segment<3>(3).setConstant(of(inertia.rate_bias_sigma));
+  information.tail<3>().setConstant(of(inertia.force_bias_sigma));
+  return information;
+}
+
+double priorCost(const BundleInertia& inertia) {
+  if (!inertia.is_free) return 0;
+  return 0.5 * inertia.bias_change.dot(priorInformation(inertia).tail<6>().cwiseProduct(inertia.bias_change));
+}
+
+void addPrior(const BundleInertia& inertia, BundleLinearization& linearization) {
+  const InertiaVector information = priorInformation(inertia);
+  linearization.inertia_block.diagonal() += information;
+  linearization.inertia_gradient.tail<6>() += information.tail<6>().cwiseProduct(inertia.bias_change);
+}
+
+void addToInertia(const StructuredInertia& structured, const Term& term, double weight,
+                  BundleLinearization& linearization) {
+  const Eigen::Matrix<double, 9, 3> weighted = weight * term.by_inertia.transpose();
+  linearization.inertia_gradient += weighted * term.residual;
+  linearization.inertia_block += weighted * term.by_inertia;
+  for (int row = 0; row < 3; ++row) {
+    const int unknown = structured.unknowns[at(row)];
+    if (unknown < 0) continue;
+    linearization.inertia_border.middleRows<6>(6 * unknown) += (weighted * term.by_twist[at(row)]).transpose();
+  }
+}
+
+// The scale of map and unit together is nobody's: that of the map is held, which takes nothing from any other change.
+void holdScale(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
+               BundleLinearization& linearization) {
+  constexpr double held = 1e-3;  // of the distance
+  if (problem.scale_camera < 1) return;
+  const int unknown = structure.unknown_of_camera[at(problem.scale_camera)];
+  if (unknown < 0) return;
+  const Eigen::Vector3d centre = state.frames[at(problem.scale_camera)].centre;
+  const Eigen::Vector3d way = centre - state.frames[0].centre;
+  const double squared = way.squaredNorm();
+  if (!(squared > 0)) return;
+  Vector6d by_twist;
+  by_twist << way / squared, (centre - linearization.origin).cross(way) / squared;
+  linearization.diagonal[at(unknown)] += by_twist * by_twist.transpose() / (held * held);
 }
 
 void add(const StructuredInertia& structured, const Term& term, double weight, BundleLinearization& linearization) {
@@ -143,7 +217,7 @@ double inertialCost(const BundleProblem& problem, double huber) {
   const auto count = [&] { cost += 0.5 * huberLoss(term.residual.squaredNorm(), term.huber_times * huber); };
   for (const BundleTurn& turn : problem.turns) {
     if (!usable(turn)) continue;
-    evaluate(turn, cameraAt(problem, turn.first), cameraAt(problem, turn.second), term, false);
+    evaluate(problem.inertia, turn, cameraAt(problem, turn.first), cameraAt(problem, turn.second), term, false);
     count();
   }
   for (const BundleSpeedChange& change : problem.speed_changes) {
@@ -153,11 +227,11 @@ double inertialCost(const BundleProblem& problem, double huber) {
   }
   for (const BundleWay& way : problem.ways) {
     if (!usable(way)) continue;
-    evaluate(problem.inertia.metres_a_unit, way, cameraAt(problem, way.first), cameraAt(problem, way.second),
-             Eigen::Vector3d::Zero(), term, false);
+    evaluate(problem.inertia, way, cameraAt(problem, way.first), cameraAt(problem, way.second), Eigen::Vector3d::Zero(),
+             term, false);
     count();
   }
-  return cost;
+  return cost + priorCost(problem.inertia);
 }
 
 double inertialCost(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
@@ -167,16 +241,38 @@ double inertialCost(const BundleProblem& problem, const BundleStructure& structu
               [&](const StructuredInertia&, const Term& term) {
                 cost += 0.5 * huberLoss(term.residual.squaredNorm(), term.huber_times * huber);
               });
-  return cost;
+  return cost + priorCost(state.inertia);
 }
 
 void linearizeInertia(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
                       double huber, BundleLinearization& linearization) {
+  const bool is_free = state.inertia.is_free;
+  if (is_free) {
+    linearization.inertia_block.setZero();
+    linearization.inertia_gradient.setZero();
+    linearization.inertia_border.setZero(linearization.camera_gradient.size(), 9);
+    linearization.cost += priorCost(state.inertia);
+    addPrior(state.inertia, linearization);
+    holdScale(problem, structure, state, linearization);
+  }
   forEachTerm(problem, structure, state, linearization.origin, true,
               [&](const StructuredInertia& structured, const Term& term) {
                 linearization.cost += 0.5 * huberLoss(term.residual.squaredNorm(), term.huber_times * huber);
-                add(structured, term, huberWeight(term.residual.norm(), term.huber_times * huber), linearization);
+                const double weight = huberWeight(term.residual.norm(), term.huber_times * huber);
+                add(structured, term, weight, linearization);
+                if (is_free) addToInertia(structured, term, weight, linearization);
               });
+}
+
+BundleInertia movedInertia(const BundleInertia& inertia, const InertiaVector& change) {
+  BundleInertia moved = inertia;
+  moved.metres_a_unit *= std::exp(change(0));
+  const double length = inertia.gravity.norm();
+  moved.gravity =
+      length *
+      (inertia.gravity + length * (tangentsOf(inertia.gravity.normalized()) * change.segment<2>(1))).normalized();
+  moved.bias_change += change.tail<6>();
+  return moved;
 }
 
 }  // namespace edgeslam

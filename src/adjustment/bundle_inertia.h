@@ -9,6 +9,10 @@
 // what happens in T2 makes. The speed itself has dropped out, so that it is no unknown (Lupton and Sukkarieh, 2012,
 // and Mur-Artal and Tardos, 2017, eliminate it likewise to find the scale).
 //
+// Where scale, gravity and biases are free, they are nine unknowns beside the cameras' (Campos, Montiel, Tardos, 2020,
+// adjust them with the poses held): bends of the map that its measurements hardly oppose, and that look like another
+// scale or bias, come out right only where all are adjusted together.
+//
 // Cameras' motions are twists [v; w] about the common origin o, as in bundle_linearization.h.
 #pragma once
 
@@ -24,5 +28,8 @@ double inertialCost(const BundleProblem& problem, const BundleStructure& structu
 // Adds both to normal equations whose blocks of pairs are not joined yet.
 void linearizeInertia(const BundleProblem& problem, const BundleStructure& structure, const BundleState& state,
                       double huber, BundleLinearization& linearization);
+
+// The same with what is adjusted of it moved.
+BundleInertia movedInertia(const BundleInertia& inertia, const InertiaVector& change);
 
 }  // namespace edgeslam

@@ -21,6 +21,7 @@ struct BundleState {
   std::vector<CameraFrame> frames;            // the same, with the centres
   std::vector<double> inverse_depths;         // of the structure's points
   std::vector<SpaceLine> lines;               // the structure's, world frame
+  BundleInertia inertia;
 };
 
 // The target as it reads the observation's row; `row` serves for it where the target moves meanwhile.
@@ -62,10 +63,14 @@ using Matrix64d = Eigen::Matrix<double, 6, 4>;
 struct BundleLinearization {
   double cost = 0;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::vector<Matrix6d> blocks;     // of the reduced system, twists; undamped but for depths and lines
-  std::vector<Matrix6d> pairs;      // of the squared difference of a host's and a target's twist, both free
-  std::vector<Matrix6d> diagonal;   // of each unknown: its block as it was before depths and lines were eliminated
-  Eigen::VectorXd gradient;         // reduced, 6 an unknown
+  std::vector<Matrix6d> blocks;    // of the reduced system, twists; undamped but for depths and lines
+  std::vector<Matrix6d> pairs;     // of the squared difference of a host's and a target's twist, both free
+  std::vector<Matrix6d> diagonal;  // of each unknown: its block as it was before depths and lines were eliminated
+  Eigen::VectorXd gradient;        // reduced, 6 an unknown
+  // Of what is adjusted of inertia, where that is free: with itself, with the twists, and the cost's gradient.
+  InertiaMatrix inertia_block = InertiaMatrix::Zero();
+  Eigen::Matrix<double, Eigen::Dynamic, 9> inertia_border;
+  InertiaVector inertia_gradient = InertiaVector::Zero();
   Eigen::VectorXd camera_gradient;  // before depths and lines were eliminated
   std::vector<EliminatedPoint> points;
   // How depth and camera motion mix, for each observation: d^2 cost / (d sight d inverse depth).

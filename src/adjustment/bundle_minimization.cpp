@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adjustment/bundle_inertia.h"
 #include "adjustment/bundle_lines.h"
 
 namespace edgeslam {
@@ -29,6 +30,7 @@ void readState(const BundleProblem& problem, const BundleStructure& structure, B
     state.inverse_depths.push_back(problem.points[at(p.index)].inverse_depth);
   state.lines.clear();
   for (const StructuredLine& line : structure.lines) state.lines.push_back(problem.lines[at(line.index)].line);
+  state.inertia = problem.inertia;
 }
 
 Eigen::Vector3d meanCentre(const BundleState& state) {
@@ -48,6 +50,7 @@ void moveState(const BundleWorkspace& workspace, BundleState& moved) {
   for (std::size_t i = 0; i < moved.inverse_depths.size(); ++i) moved.inverse_depths[i] += workspace.depth_changes[i];
   for (std::size_t i = 0; i < moved.lines.size(); ++i)
     moved.lines[i] = movedLine(moved.lines[i], workspace.line_changes[i]);
+  if (moved.inertia.is_free) moved.inertia = movedInertia(moved.inertia, workspace.step.inertia);
 }
 
 // What the step takes off the cost if all is linear: half of it is undone by the curvature.
@@ -57,6 +60,7 @@ double expectedGain(const BundleWorkspace& workspace) {
     descent -= workspace.linearization.points[i].gradient * workspace.depth_changes[i];
   for (std::size_t i = 0; i < workspace.line_changes.size(); ++i)
     descent -= workspace.linearization.lines[i].gradient.dot(workspace.line_changes[i]);
+  if (workspace.state.inertia.is_free) descent -= workspace.linearization.inertia_gradient.dot(workspace.step.inertia);
   return 0.5 * descent;
 }
 

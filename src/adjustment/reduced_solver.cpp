@@ -68,14 +68,39 @@ bool ReducedSolver::solve(const BundleStructure& structure, const BundleState& s
     toStepsOfRow(levers_[at(place.row)], own);
     blocks_[b].diagonal() += damping * own.diagonal().cwiseMax(least_information);
   }
+  border_.resize(0, 9);
+  if (state.inertia.is_free) {
+    border_ = linearization.inertia_border;
+    for (std::size_t k = 0; k < unknowns; ++k) {
+      const auto row = static_cast<Eigen::Index>(6 * k);
+      border_.middleRows<3>(row + 3) -= (skew(levers_[k]) * border_.middleRows<3>(row)).eval();
+    }
+  }
+  const Eigen::Matrix<double, Eigen::Dynamic, 9> border = border_;
   if (!(structure.dense ? solveDense(structure, step.changes) : (fillSparse(structure), solveSparse(step.changes))))
     return false;
+  step.inertia.setZero();
+  if (state.inertia.is_free && !solveInertia(linearization, border, damping, step)) return false;
   step.twists = step.changes;
   for (std::size_t k = 0; k < unknowns; ++k) {
     const Eigen::Vector3d turn = step.changes.segment<3>(static_cast<Eigen::Index>(6 * k + 3));
     step.twists.segment<3>(static_cast<Eigen::Index>(6 * k)) += levers_[k].cross(turn);
   }
   return step.changes.allFinite();
+}
+
+bool ReducedSolver::solveInertia(const BundleLinearization& linearization,
+                                 const Eigen::Matrix<double, Eigen::Dynamic, 9>& border, double damping,
+                                 CameraStep& step) {
+  InertiaMatrix block = linearization.inertia_block;
+  block.diagonal() += damping * block.diagonal().cwiseMax(least_information);
+  block -= border.transpose() * border_;
+  const Eigen::LLT<InertiaMatrix> factor(block);
+  if (factor.info() != Eigen::Success) return false;
+  step.inertia = factor.solve(-linearization.inertia_gradient - border.transpose() * step.changes);
+  step.changes -= border_ * step.inertia;
+  inertia_covariance_ = factor.solve(InertiaMatrix::Identity());
+  return step.inertia.allFinite();
 }
 
 bool ReducedSolver::solveDense(const BundleStructure& structure, Eigen::VectorXd& solution) {
@@ -85,6 +110,7 @@ bool ReducedSolver::solveDense(const BundleStructure& structure, Eigen::VectorXd
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(dense_);
   if (factor.info() != Eigen::Success) return false;
   factor.solveInPlace(solution);
+  if (border_.rows() > 0) factor.solveInPlace(border_);
   return true;
 }
 
@@ -92,6 +118,7 @@ bool ReducedSolver::solveSparse(Eigen::VectorXd& solution) {
   factor_.factorize(sparse_);
   if (factor_.info() != Eigen::Success) return false;
   solution = factor_.solve(solution).eval();
+  if (border_.rows() > 0) border_ = factor_.solve(Eigen::MatrixXd(border_));
   return true;
 }
 

@@ -15,6 +15,7 @@ namespace edgeslam {
 struct CameraStep {
   Eigen::VectorXd changes;
   Eigen::VectorXd twists;
+  InertiaVector inertia = InertiaVector::Zero();  // the change of what is adjusted of inertia
 };
 
 class ReducedSolver {
@@ -27,7 +28,13 @@ class ReducedSolver {
   bool solve(const BundleStructure& structure, const BundleState& state, const BundleLinearization& linearization,
              double damping, CameraStep& step);
 
+  // Of the last solve(), where inertia was free: the covariance of its unknowns, all else free.
+  const InertiaMatrix& inertiaCovariance() const { return inertia_covariance_; }
+
  private:
+  // Where inertia is free: its unknowns are eliminated last, by what they share with the cameras.
+  bool solveInertia(const BundleLinearization& linearization, const Eigen::Matrix<double, Eigen::Dynamic, 9>& border,
+                    double damping, CameraStep& step);
   bool solveDense(const BundleStructure& structure, Eigen::VectorXd& solution);
   bool solveSparse(Eigen::VectorXd& solution);
   void fillSparse(const BundleStructure& structure);
@@ -35,6 +42,8 @@ class ReducedSolver {
   std::vector<Eigen::Vector3d> levers_;  // of each unknown's camera: from the twists' origin to its centre
   std::vector<Matrix6d> blocks_;         // damped, for centre and turn
   Eigen::MatrixXd dense_;
+  Eigen::Matrix<double, Eigen::Dynamic, 9> border_;  // inertia's with the steps, and then solved for
+  InertiaMatrix inertia_covariance_ = InertiaMatrix::Zero();
   Eigen::SparseMatrix<double> sparse_;  // lower triangle
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
 };

@@ -207,9 +207,10 @@ int runReplay(const ReplayArguments& arguments) {
   }
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
   Configuration configuration = configurationFor(*source, arguments.configuration);
-  const Camera camera = cameraFor(*source, configuration, arguments.input);
+  const Camera calibrated = cameraFor(*source, configuration, arguments.input);
   const MeasuredBeside measured =
       measuredBeside(*source, {arguments.imu, arguments.wheels, arguments.realtime}, configuration);
+  const Camera camera = withReadoutOfUnit(calibrated, configuration);
   std::optional<Trajectory> ground_truth;
   if (!source->groundTruthPath().empty()) ground_truth = readTrajectory(source->groundTruthPath());
 

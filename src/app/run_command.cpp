@@ -57,6 +57,7 @@ DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
   const ServiceOptions& service = setup.configuration.service;
   setup.camera = cameraOf(arguments, setup.configuration);
   setup.configuration.settings = settingsWithInertia(setup.configuration);
+  setup.camera = withReadoutOfUnit(setup.camera, setup.configuration);
   setup.capture = setup.configuration.capture;
   if (!arguments.source.empty()) {
     setup.capture = CameraOptions();

@@ -205,6 +205,14 @@ Camera asConfigured(Camera camera, const Configuration& configuration) {
   return camera;
 }
 
+Camera withReadoutOfUnit(Camera camera, const Configuration& configuration) {
+  const InertiaConfiguration& inertia = configuration.inertia;
+  if (inertia.is_used && !configuration.has_readout && camera.readout_s == 0) {
+    camera.readout_s = inertia.camera_readout_s;
+  }
+  return camera;
+}
+
 Settings settingsWithInertia(const Configuration& configuration) {
   Settings settings = configuration.settings;
   if (!configuration.inertia.is_used) return settings;

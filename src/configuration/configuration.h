@@ -38,7 +38,8 @@ struct InertiaConfiguration {
   std::string channel = "IMU";  // of LCM, for live runs
   bool has_unit = false;        // the file says where it sits; otherwise `unit` has only its noise
   InertialUnit unit;
-  double time_offset_s = 0;  // as unit.offset_ns
+  double time_offset_s = 0;     // as unit.offset_ns
+  double camera_readout_s = 0;  // as Camera::readout_s, where it was found with the unit; 0: it was not
 };
 
 struct Configuration {
@@ -62,6 +63,10 @@ std::string maskProblem(const Camera& camera, const Configuration& configuration
 // The camera with what the configuration gives of it by itself: its readout and its mask. Throws InputError where there
 // is a maskProblem().
 Camera asConfigured(Camera camera, const Configuration& configuration);
+
+// The camera with the readout that was found with the inertial unit, where that is used and its own calibration has
+// none.
+Camera withReadoutOfUnit(Camera camera, const Configuration& configuration);
 
 // The settings with the inertial unit, where it is to be used. Throws InputError where it is not known where it sits.
 Settings settingsWithInertia(const Configuration& configuration);

@@ -90,7 +90,7 @@ std::string FrameFolderWriter::fail(const std::string& problem) {
 std::string FrameFolderWriter::write(std::int64_t time_ns, const cv::Mat& grey) {
   if (!problem_.empty()) return problem_;
   if (time_ns < 0 || time_ns <= last_ns_) return fail(folder_ + ": a frame's time stamp is not after the one before");
-  if (!encodeFrame(grey, png_)) return fail(folder_ + ": no memory to encode a frame");
+  if (!encodeFrame(grey, FrameCode::packed, png_)) return fail(folder_ + ": no memory to encode a frame");
   const auto size = static_cast<std::int64_t>(png_.size());
   if (freeBytes(folder_) - size < free_bytes_kept_) return fail(tooFull(folder_, free_bytes_kept_));
   const std::string name = std::string(tum_frames_name) + "/" + tumFrameName(time_ns);

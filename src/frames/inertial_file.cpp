@@ -15,6 +15,8 @@
 namespace edgeslam {
 namespace {
 
+constexpr double largest_readout_s = 0.2;
+
 std::optional<InertialSample> parseSample(const std::string& text) {
   const std::vector<std::string_view> columns = splitColumns(text);
   const std::optional<std::int64_t> time = columns.size() == 7 ? parseStamp(columns[0]) : std::nullopt;
@@ -112,7 +114,8 @@ std::vector<InertialSample> readInertialSamples(const std::string& path) {
 InertialUnit readInertialUnit(const std::string& path) {
   return readYaml(path, "inertial unit", [](const YamlSection& section) {
     section.rejectUnknownKeys({"imu_T_camera", "gyroscope_noise_density", "gyroscope_random_walk",
-                               "accelerometer_noise_density", "accelerometer_random_walk", "time_offset_s", "rate_hz"});
+                               "accelerometer_noise_density", "accelerometer_random_walk", "time_offset_s", "readout_s",
+                               "rate_hz"});
     InertialUnit unit;
     unit.imu_T_camera = readPose(section, "imu_T_camera");
     readNoise(section, unit);
@@ -121,7 +124,16 @@ InertialUnit readInertialUnit(const std::string& path) {
       if (std::abs(offset_s) > 10) section.failAt("time_offset_s", "'time_offset_s' must be -10 to 10 seconds");
       unit.offset_ns = static_cast<std::int64_t>(std::llround(offset_s * 1e9));
     }
+    if (section.has("readout_s") && std::abs(section.number("readout_s")) > largest_readout_s) {
+      section.failAt("readout_s", "'readout_s' must be -0.2 to 0.2 seconds");
+    }
     return unit;
+  });
+}
+
+double readReadoutOfUnit(const std::string& path) {
+  return readYaml(path, "inertial unit", [](const YamlSection& section) {
+    return section.has("readout_s") ? section.number("readout_s") : 0.0;
   });
 }
 
@@ -131,9 +143,16 @@ std::vector<InertialSample> readInertialSamples(const InertialFiles& files) {
 }
 
 InertialRecording readInertialRecording(const InertialFiles& files) {
-  std::vector<InertialSample> samples = readInertialSamples(files);
+  InertialRecording recording;
+  recording.samples = readInertialSamples(files);
   if (files.unit.empty()) throw InputError(files.samples + ": no imu.yaml lies beside it, with imu_T_camera");
-  return {files.euroc_camera.empty() ? readInertialUnit(files.unit) : readEurocUnit(files), std::move(samples)};
+  if (files.euroc_camera.empty()) {
+    recording.unit = readInertialUnit(files.unit);
+    recording.camera_readout_s = readReadoutOfUnit(files.unit);
+  } else {
+    recording.unit = readEurocUnit(files);
+  }
+  return recording;
 }
 
 }  // namespace edgeslam

@@ -13,6 +13,7 @@
 
 #include "geometry/median.h"
 #include "geometry/relative_rotation.h"
+#include "geometry/tangents.h"
 
 namespace edgeslam {
 namespace {
@@ -178,13 +179,6 @@ EpipolarSystem epipolarSystem(const Pose& pose, const Eigen::Matrix<double, 3, 2
     system.gradient += weight * constraint * derivative;
   }
   return system;
-}
-
-Eigen::Matrix<double, 3, 2> tangentsOf(const Eigen::Vector3d& direction) {
-  Eigen::Matrix<double, 3, 2> tangents;
-  tangents.col(0) = direction.unitOrthogonal();
-  tangents.col(1) = direction.cross(tangents.col(0));
-  return tangents;
 }
 
 // Levenberg-Marquardt from RANSAC's pose, which rests on five matches, over all matches.

@@ -42,6 +42,7 @@ Configuration libraryConfiguration(const std::string& calibration_file, const st
   if (configuration.camera) {
     configuration.camera = asConfigured(*configuration.camera, configuration);
     configuration.settings = settingsWithInertia(configuration);
+    configuration.camera = withReadoutOfUnit(*configuration.camera, configuration);
     return configuration;
   }
   throw InputError(configuration_file + ": no calibration: give one (camera.calibration)");

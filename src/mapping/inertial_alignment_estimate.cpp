@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/median.h"
+#include "geometry/tangents.h"
 #include "mapping/inertial_terms.h"
 
 namespace edgeslam {
@@ -167,23 +168,13 @@ Solution solveFreely(const std::vector<Equation>& equations, double bias_prior) 
   return solution;
 }
 
-// Two directions square to gravity.
-Eigen::Matrix<double, 3, 2> tiltsOf(const Eigen::Vector3d& gravity) {
-  const Eigen::Vector3d along = gravity.normalized();
-  const Eigen::Vector3d aside =
-      along.cross(std::abs(along.x()) < 0.7 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY()).normalized();
-  Eigen::Matrix<double, 3, 2> tilts;
-  tilts << aside, along.cross(aside);
-  return tilts;
-}
-
 // Gravity as long as it is; Gauss and Newton's method on [scale; tilts of gravity [rad]; change of the bias].
 Solution solve(const std::vector<Equation>& equations, const Solution& start, const InertialAlignment& so_far,
                double bias_prior) {
   Solution solution = start;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const double visual_sigma = visualSigma(equations, solution);
-    const Eigen::Matrix<double, 3, 2> tilts = standard_gravity * tiltsOf(solution.gravity);
+    const Eigen::Matrix<double, 3, 2> tilts = standard_gravity * tangentsOf(solution.gravity.normalized());
     Matrix6d information = Matrix6d::Zero();
     Vector6d gradient = Vector6d::Zero();
     information.diagonal().tail<3>().setConstant(1 / squared(bias_prior));
@@ -217,11 +208,20 @@ Solution solve(const std::vector<Equation>& equations, const Solution& start, co
   return solution;
 }
 
+InertialAlignment with(const Solution& solution, InertialAlignment alignment) {
+  alignment.metres_a_unit = solution.scale;
+  alignment.scale_sigma = solution.scale_sigma;
+  alignment.gravity = solution.gravity;
+  alignment.bias.force += solution.bias_change;
+  alignment.force_bias_sigma = solution.bias_sigma;
+  return alignment;
+}
+
 }  // namespace
 
 InertialAlignmentEstimate estimateInertialAlignment(const InertialUnit& unit, const InertialAlignmentOptions& options,
                                                     const Map& map, int world, const InertialAlignment& so_far) {
-  InertialAlignmentEstimate estimate{so_far, ""};
+  InertialAlignmentEstimate estimate{so_far, {}, ""};
   const std::vector<const Keyframe*> keyframes = latestKeyframes(map, world, options.most_keyframes);
   const double rate_prior = so_far.is_known ? bias_change_prior * rate_bias_prior : rate_bias_prior;
   const RateBias rates =
@@ -246,14 +246,11 @@ InertialAlignmentEstimate estimateInertialAlignment(const InertialUnit& unit, co
   if (solution.is_determined) solution = solve(equations, solution, so_far, force_prior);
   if (!solution.is_determined || !(solution.scale > 0) || !(solution.scale_sigma < options.largest_scale_sigma)) {
     estimate.lacking = "inertia: the scale is not known yet; the speed must change more";
+    if (solution.is_determined && solution.scale > 0) estimate.rough = with(solution, found);
     return estimate;
   }
+  found = with(solution, found);
   found.is_known = true;
-  found.metres_a_unit = solution.scale;
-  found.scale_sigma = solution.scale_sigma;
-  found.gravity = solution.gravity;
-  found.bias.force += solution.bias_change;
-  found.force_bias_sigma = solution.bias_sigma;
   return estimate;
 }
 

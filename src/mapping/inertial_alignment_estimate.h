@@ -3,6 +3,7 @@
 // without speeds, which drop out of what three keyframes in a row say: adjustment/bundle_inertia.h).
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "map/map.h"
@@ -18,7 +19,8 @@ struct InertialAlignmentOptions {
 
 struct InertialAlignmentEstimate {
   InertialAlignment alignment;
-  std::string lacking;  // why it is not known yet, in words that a user understands; empty: it is
+  std::optional<InertialAlignment> rough;  // where it is not known, but there is something to begin with
+  std::string lacking;                     // why it is not known yet, in words that a user understands; empty: it is
 };
 
 // Of a world. `so_far`: what was found earlier, from which scale and gravity are improved and the biases follow; the

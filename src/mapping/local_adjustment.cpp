@@ -106,6 +106,17 @@ const InertialAlignment* alignmentOf(const LocalAdjustmentOptions& options, cons
   return options.inertia && known != map.inertia.end() ? &known->second : nullptr;
 }
 
+// What a map's measurements err by hangs together, so that all is known less well than they say.
+void readInertia(const BundleInertia& adjusted, const InertiaMatrix& covariance, InertialAlignment& alignment) {
+  constexpr double honest_times = 2;
+  alignment.metres_a_unit = adjusted.metres_a_unit;
+  alignment.gravity = adjusted.gravity;
+  alignment.bias = {adjusted.bias_change.head<3>(), adjusted.bias_change.tail<3>()};
+  alignment.scale_sigma = honest_times * std::sqrt(covariance(0, 0));
+  alignment.rate_bias_sigma = honest_times * std::sqrt(covariance.diagonal().segment<3>(3).maxCoeff());
+  alignment.force_bias_sigma = honest_times * std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
+}
+
 }  // namespace
 
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map) {
@@ -182,7 +193,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   const auto indexOf = [&](KeyframeId keyframe) { return camera_of[static_cast<std::size_t>(keyframe)]; };
   addMotionAlongLines(camera, map, lines.lines, indexOf, problem);
   if (const InertialAlignment* known = alignmentOf(options, map, ordered_free.front())) {
-    addInertialTerms(*options.inertia, *known, map, ordered_free, cameraOf, problem);
+    addInertialTerms(*options.inertia, *known, options.inertia_is_free, map, ordered_free, cameraOf, problem);
   }
   if (options.wheels) {
     const auto known = map.wheels.find(map.keyframes[ordered_free.front()].world);
@@ -192,6 +203,9 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   }
   const BundleResult result = adjustBundle(camera, problem, options.bundle, interrupted);
   if (!result.usable) return false;
+  if (problem.inertia.is_free) {
+    readInertia(problem.inertia, result.inertia_covariance, map.inertia[map.keyframes[ordered_free.front()].world]);
+  }
 
   for (std::size_t k = 0; k < problem.cameras.size(); ++k) {
     Keyframe& keyframe = map.keyframes[keyframe_of[k]];

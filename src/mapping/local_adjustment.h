@@ -25,6 +25,8 @@ struct LocalAdjustmentOptions {
   std::optional<InertialUnit>
       inertia;  // what it felt between keyframes counts in worlds whose lie to the earth is known
   std::optional<WheelOptions> wheels;  // that turn beneath the camera; without: the camera alone
+  // Scale, gravity and biases are adjusted, too, with their deviations, from where the map has them.
+  bool inertia_is_free = false;
 };
 
 // Adjusts around the latest keyframe; takes out outliers and points that lost their depth. False where the solver

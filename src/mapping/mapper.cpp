@@ -160,28 +160,42 @@ const InertialAlignment* Mapper::knownAlignment() const {
   return found != map_.inertia.end() && found->second.is_known ? &found->second : nullptr;
 }
 
-// Once its lie is known, the whole world is adjusted by it, in turns with it; from then on the biases are followed,
-// while scale and gravity become known better.
+// Scale, gravity and biases are found with the keyframes held, and then adjusted together with all of the world: what
+// bends a map looks like another scale or bias to the one alone. Once they are known, they follow each keyframe, and now
+// and then all is adjusted together again, until the scale is known well.
 void Mapper::alignToEarth() {
   if (!options_.local_adjustment.inertia) return;
-  constexpr int most_rounds = 10;
-  constexpr double settled = 2e-3;  // change of the scale from one round to the next, share of it
   InertialAlignment& alignment = map_.inertia[world_];
   const bool was_known = alignment.is_known;
-  for (int round = 0; round < most_rounds; ++round) {
-    InertialAlignment so_far = alignment;
-    so_far.is_known = was_known;
-    const InertialAlignmentEstimate estimate = estimateInertialAlignment(
-        *options_.local_adjustment.inertia, options_.inertial_alignment, map_, world_, so_far);
-    const double before = alignment.metres_a_unit;
-    const bool was_found = alignment.is_known;
-    alignment = estimate.alignment;
-    alignment.is_known |= was_known;
-    lacking_ = alignment.is_known ? "" : estimate.lacking;
-    if (!alignment.is_known || was_known) return;
-    adjustGlobally(camera_, options_.global_adjustment, options_.local_adjustment, map_);
-    if (was_found && std::abs(alignment.metres_a_unit - before) < settled * before) return;
+  const InertialAlignmentEstimate estimate = estimateInertialAlignment(
+      *options_.local_adjustment.inertia, options_.inertial_alignment, map_, world_, alignment);
+  lacking_ = estimate.lacking;
+  if (was_known) {
+    if (estimate.lacking.empty()) alignment = estimate.alignment;
+    const bool is_due = ++keyframes_since_alignment_ >= options_.alignment_interval;
+    if (is_due && adjusted_scale_sigma_ > options_.well_known_scale_sigma) alignWithMap(alignment);
+    return;
   }
+  alignment = estimate.alignment;
+  alignment.is_known = false;
+  if (estimate.lacking.empty()) alignWithMap(estimate.alignment);
+  if (estimate.rough) alignWithMap(*estimate.rough);
+}
+
+// On a copy: what bends the map to no end is not kept.
+void Mapper::alignWithMap(const InertialAlignment& start) {
+  keyframes_since_alignment_ = 0;
+  Map aligned = map_;
+  InertialAlignment& alignment = aligned.inertia[world_];
+  alignment = start;
+  LocalAdjustmentOptions local = options_.local_adjustment;
+  local.inertia_is_free = true;
+  if (!adjustGlobally(camera_, options_.global_adjustment, local, aligned)) return;
+  adjusted_scale_sigma_ = alignment.scale_sigma;
+  if (!(alignment.scale_sigma < options_.inertial_alignment.largest_scale_sigma)) return;
+  alignment.is_known = true;
+  lacking_.clear();
+  map_ = std::move(aligned);
 }
 
 const WheelScale* Mapper::knownWheelScale() const {

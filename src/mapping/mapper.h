@@ -33,6 +33,8 @@ struct MapperOptions {
   MapUncertaintyOptions uncertainty;
   InertialAlignmentOptions inertial_alignment;  // with local_adjustment.inertia
   WheelScaleOptions wheel_scale;                // with local_adjustment.wheels
+  int alignment_interval = 8;  // keyframes from one adjustment together with scale and gravity to another ...
+  double well_known_scale_sigma = 0.005;  // ... until the scale's standard deviation is this share of it
 };
 
 struct WorldPose {
@@ -116,6 +118,7 @@ class Mapper {
   bool addKeyframe(const TrackedFrame& frame);
   void alignToEarth();
   void scaleByWheels();
+  void alignWithMap(const InertialAlignment& start);
 
   Camera camera_;
   MapperOptions options_;
@@ -125,6 +128,8 @@ class Mapper {
   std::string first_description_, description_;
   std::string lacking_;
   std::string lacking_for_wheels_;
+  int keyframes_since_alignment_ = 0;
+  double adjusted_scale_sigma_ = 1;  // after the last of these adjustments, share of the scale
   bool initialised_ = false;
   bool start_stood_ = false;  // the latest one
   int world_ = -1;

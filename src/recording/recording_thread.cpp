@@ -17,7 +17,8 @@ using Clock = std::chrono::steady_clock;
 constexpr auto sync_interval = std::chrono::seconds(1);
 constexpr auto drain_time = std::chrono::seconds(1);
 constexpr auto idle_time = std::chrono::milliseconds(10);
-constexpr int nice_level = 10;
+constexpr int nice_level = 5;
+constexpr std::size_t unhurried_backlog = 8;  // entries that wait: more, and frames are packed no more
 
 // On Linux a thread has a nice level of its own. Lowering the priority needs no privilege, nor does leaving the
 // real-time scheduling that the thread which starts this one may have.
@@ -116,7 +117,8 @@ void RecordingThread::write(const QueuedEntry& queued) {
   writeLost(queued.lost_before);
   const RecordingEntry& entry = queued.entry;
   if (entry.kind == DecisionKind::frame) {
-    writer_.writeFrame(entry.index, entry.time_ns, entry.images->pyramid.levels[0]);
+    const FrameCode code = queue_.read_available() > unhurried_backlog ? FrameCode::stored : FrameCode::packed;
+    writer_.writeFrame(entry.index, entry.time_ns, entry.images->pyramid.levels[0], code);
   } else if (entry.kind == DecisionKind::inertia) {
     for (std::int64_t i = 0; i < entry.number; ++i) {
       writer_.writeDecision(inertiaDecision(entry.index, entry.samples[static_cast<std::size_t>(i)]));

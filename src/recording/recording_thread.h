@@ -1,4 +1,5 @@
-// The flight recorder's thread: takes what the run hands over and writes it, without ever making the run wait.
+// The flight recorder's thread: takes what the run hands over and writes it, without ever making the run wait. Where it
+// falls behind, it writes frames as they are, which takes a tenth of the work and twice the room.
 #pragma once
 
 #include <array>
@@ -33,7 +34,7 @@ RecordingEntry unreadableFrameEntry(std::int64_t index, std::int64_t time_ns, st
 
 class RecordingThread {
  public:
-  // Opens the recording (RecordingWriter::open, which may throw InputError) and starts the thread, at nice 10.
+  // Opens the recording (RecordingWriter::open, which may throw InputError) and starts the thread, at nice 5.
   // `capacity`: entries that may wait, each frame among them holding its image; the default is 1 s of frames with
   // inertia at 1 kHz, and 2 s without it.
   RecordingThread(const std::string& folder, const RecordingDescription& description,

@@ -7,7 +7,6 @@
 #include "edgeslam/input_error.h"
 #include "files/text_file.h"
 #include "frames/calibration_file.h"
-#include "frames/frame_encoding.h"
 #include "frames/mask_file.h"
 
 namespace edgeslam {
@@ -57,14 +56,14 @@ void RecordingWriter::open(const std::string& folder, const RecordingDescription
                   wholeBlocks(description.configuration.size()) + folders_and_lists;
 }
 
-bool RecordingWriter::writeFrame(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
+bool RecordingWriter::writeFrame(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey, FrameCode code) {
   if (!status_.recording) return false;
   const Decision decision{DecisionKind::frame, index, time_ns, 0, ""};
   if (grey.type() != CV_8UC1 || grey.size() != size_) {
     return refuse("frame " + std::to_string(index) + " is not of the camera's size in 8 bits of grey");
   }
   if (std::string problem = order_.add(decision); !problem.empty()) return refuse(problem);
-  if (!encodeFrame(grey, png_)) return refuse("no memory to encode frame " + std::to_string(index));
+  if (!encodeFrame(grey, code, png_)) return refuse("no memory to encode frame " + std::to_string(index));
   const std::int64_t bytes = wholeBlocks(png_.size()) + folder_entry_bytes;
   if (!keepsLimits(bytes)) return false;
   const std::string name = tumFrameName(time_ns);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "frames/frame_encoding.h"
 #include "geometry/camera.h"
 #include "recording/recording_files.h"
 #include "recording/recording_layout.h"
@@ -51,7 +52,7 @@ class RecordingWriter {
   // `grey`: CV_8U of the camera's size. False where it was not recorded: a gap, counted and written down, where the
   // frame cannot be one of the recording (its size, its index or time stamp not above those before); otherwise
   // recording has ended, see status().
-  bool writeFrame(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey);
+  bool writeFrame(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey, FrameCode code = FrameCode::packed);
   // Of any kind but `frame`, `stopped` and `end`. False as for writeFrame. Write a frame's updates before the frame, so
   // that a recording which breaks off between the two still repeats the run.
   bool writeDecision(const Decision& decision);

@@ -83,6 +83,7 @@ TEST_P(BundleInertiaOf, DerivativesAreTheNumericOnes) {
     state.rotations.push_back(c.world_T_camera.rotation);
     state.frames.push_back(cameraFrame(c.world_T_camera));
   }
+  state.inertia = problem.inertia;
   ASSERT_GT(inertialCost(problem, structure, state, 1e3), 1);
   EXPECT_NEAR(inertialCost(problem, structure, state, huber), inertialCost(problem, huber), 1e-9);
 
@@ -142,6 +143,99 @@ TEST_P(BundleInertiaOf, DerivativesAreTheNumericOnes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Blocks, BundleInertiaOf, testing::Values(30, 0));
+
+// The same inertia with biases in what was measured, which the problem is to find.
+void addBiases(Random& random, const Vector6d& biases, BundleProblem& problem) {
+  problem.inertia.is_free = true;
+  problem.inertia.rate_bias_sigma = 1;
+  problem.inertia.force_bias_sigma = 10;
+  const auto some = [&] { return Eigen::Matrix3d(uniform(random, 0.2, 0.6) * Eigen::Matrix3d::Identity()); };
+  for (BundleTurn& turn : problem.turns) {
+    turn.by_rate_bias = -some();
+    turn.first_R_second = turn.first_R_second * rotationExp(turn.by_rate_bias * biases.head<3>()).conjugate();
+  }
+  for (BundleSpeedChange& change : problem.speed_changes) {
+    change.first_by_bias << 0.1 * some(), -some();
+    change.second_by_bias << 0.1 * some(), -some();
+    change.of_first -= change.first_by_bias * biases;
+    change.of_second -= change.second_by_bias * biases;
+  }
+}
+
+const Vector6d some_biases = (Vector6d() << 0.01, -0.02, 0.015, 0.2, -0.1, 0.15).finished();
+
+TEST(BundleInertia, DerivativesByScaleGravityAndBiasesAreTheNumericOnes) {
+  Random random(6);
+  BundleProblem truth = sceneWithInertia(random, 6, 1).truth;
+  const Camera camera = sceneWithInertia(random, 6, 1).camera;
+  addBiases(random, some_biases, truth);
+  truth.inertia.rate_bias_sigma = truth.inertia.force_bias_sigma = 0;
+  truth.inertia.bias_change = some_biases;
+  BundleStructure structure;
+  structureBundle(camera, truth, 30, structure);
+  BundleState state;
+  for (const BundleCamera& c : truth.cameras) {
+    state.rotations.push_back(c.world_T_camera.rotation);
+    state.frames.push_back(cameraFrame(c.world_T_camera));
+  }
+  const auto unknowns = static_cast<Eigen::Index>(structure.camera_of_unknown.size());
+  const auto linearizedAt = [&](const InertiaVector& change) {
+    state.inertia = movedInertia(truth.inertia, change);
+    BundleLinearization made;
+    made.blocks.assign(structure.places.size(), Matrix6d::Zero());
+    made.diagonal.assign(static_cast<std::size_t>(unknowns), Matrix6d::Zero());
+    made.camera_gradient.setZero(6 * unknowns);
+    linearizeInertia(truth, structure, state, 1e3, made);
+    return made;
+  };
+  const BundleLinearization at_truth = linearizedAt(InertiaVector::Zero());
+  EXPECT_LT(at_truth.cost, 1e-12) << "all is explained";
+  constexpr double step = 1e-6;
+  for (int k = 0; k < 9; ++k) {
+    const BundleLinearization more = linearizedAt(step * InertiaVector::Unit(k));
+    const BundleLinearization less = linearizedAt(-step * InertiaVector::Unit(k));
+    const Eigen::VectorXd border = (more.camera_gradient - less.camera_gradient) / (2 * step);
+    EXPECT_LT((border - at_truth.inertia_border.col(k)).norm(), 1e-4 * (1 + border.norm())) << k;
+    const InertiaVector block = (more.inertia_gradient - less.inertia_gradient) / (2 * step);
+    EXPECT_LT((block - at_truth.inertia_block.col(k)).norm(), 1e-4 * (1 + block.norm())) << k;
+    // Away from there, the gradient is that of the cost.
+    const InertiaVector away = InertiaVector::Constant(0.01);
+    const double numeric = (linearizedAt(away + step * InertiaVector::Unit(k)).cost -
+                            linearizedAt(away - step * InertiaVector::Unit(k)).cost) /
+                           (2 * step);
+    if (k >= 1 && k < 3) continue;  // tilts are those of gravity as it is then
+    const double gradient = linearizedAt(away).inertia_gradient(k);
+    EXPECT_NEAR(gradient, numeric, 1e-3 * (1 + std::abs(gradient))) << k;
+  }
+}
+
+TEST_P(BundleInertiaOf, ScaleGravityAndBiasesAreFoundWithTheMap) {
+  Random random(7);
+  BundleSceneOptions options;
+  options.cameras = GetParam() > 0 ? 12 : 34;  // with all blocks, and with those that are asked for
+  options.fixed = 1;
+  BundleScene scene = makeBundleScene(random, options);
+  addInertia(random, 300, 50, scene.truth);
+  scene.truth.ways.clear();
+  addBiases(random, some_biases, scene.truth);
+  BundleProblem problem = perturbedProblem(random, scene.truth, 0.005, 0.003);
+  problem.scale_camera = options.cameras - 1;
+  problem.inertia.metres_a_unit *= 1.2;
+  problem.inertia.gravity = rotationExp({0.1, -0.05, 0.02}) * problem.inertia.gravity;
+  const BundleResult result = adjustBundle(scene.camera, problem, manyIterations());
+  ASSERT_TRUE(result.usable);
+  EXPECT_LT(result.final_cost, 1e-3);
+  const auto length = [&](const BundleProblem& of) {
+    return (of.cameras.back().world_T_camera.translation - of.cameras.front().world_T_camera.translation).norm();
+  };
+  EXPECT_NEAR(problem.inertia.metres_a_unit * length(problem), scene.truth.inertia.metres_a_unit * length(scene.truth),
+              1e-3);
+  EXPECT_LT((problem.inertia.gravity - scene.truth.inertia.gravity).norm(), 1e-2);
+  EXPECT_LT((problem.inertia.bias_change.head<3>() - some_biases.head<3>()).norm(), 1e-3);
+  EXPECT_LT((problem.inertia.bias_change.tail<3>() - some_biases.tail<3>()).norm(), 1e-2);
+  EXPECT_GT(result.inertia_covariance.diagonal().minCoeff(), 0);
+  EXPECT_LT(std::sqrt(result.inertia_covariance(0, 0)), 0.1);
+}
 
 TEST(BundleInertia, TellsTheScaleThatPointsCannot) {
   Random random(3);

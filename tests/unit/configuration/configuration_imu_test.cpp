@@ -12,6 +12,7 @@ const std::string pose = "imu_T_camera: {translation: [0.01, -0.02, 0.03], quate
 Configuration configurationOf(const std::string& text) {
   const TemporaryFolder folder;
   folder.write("units/known.yaml", pose + "\ngyroscope_noise_density: 0.004\ntime_offset_s: -0.005\n");
+  folder.write("units/rolling.yaml", pose + "\nreadout_s: 0.024\n");
   folder.write("units/bad.yaml", pose + "\ngyroscope_noise_density: -1\n");
   return readConfiguration(folder.write("file.yaml", text));
 }
@@ -53,6 +54,20 @@ TEST(ConfigurationImu, AUsedUnitIsInTheSettings) {
   ASSERT_TRUE(settings.tracking.inertia);
   EXPECT_EQ(settings.tracking.inertia->rate_noise, 0.004);
   EXPECT_TRUE(settings.mapping.local_adjustment.inertia);
+}
+
+TEST(ConfigurationImu, TheReadoutFoundWithTheUnitIsTheCamerasWhereItsCalibrationHasNone) {
+  Configuration with = configurationOf("imu: {enabled: true, calibration: units/rolling.yaml}\n");
+  Camera camera;
+  EXPECT_EQ(withReadoutOfUnit(camera, with).readout_s, 0.024);
+  with.has_readout = true;
+  EXPECT_EQ(withReadoutOfUnit(camera, with).readout_s, 0) << "the configuration says: a global shutter";
+  with.has_readout = false;
+  camera.readout_s = -0.01;
+  EXPECT_EQ(withReadoutOfUnit(camera, with).readout_s, -0.01);
+  camera.readout_s = 0;
+  with.inertia.is_used = false;
+  EXPECT_EQ(withReadoutOfUnit(camera, with).readout_s, 0);
 }
 
 TEST(ConfigurationImu, WhatCannotBeIsRefused) {

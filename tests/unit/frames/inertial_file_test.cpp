@@ -81,6 +81,7 @@ TEST(InertialFile, SaysWhatIsWrongWithAUnit) {
   expectUnitRefused(unit_text + "gyroscope_noise_densty: 1\n", ":6: ", "unknown key", "gyroscope_noise_density");
   expectUnitRefused("accelerometer_noise_density: -1\n" + unit_text, ":1: ", "greater than 0");
   expectUnitRefused("imu_T_camera: [1\n", "YAML");
+  expectUnitRefused(unit_text + "readout_s: 24\n", ":6: ", "-0.2 to 0.2");
 }
 
 TEST(InertialFile, IsFoundBesideTheFrames) {
@@ -92,6 +93,9 @@ TEST(InertialFile, IsFoundBesideTheFrames) {
   expectInputError([&] { readInertialRecording(openFrames(folder.path(""))->inertialFiles()); }, "imu.yaml");
   folder.write("imu.yaml", unit_text);
   EXPECT_EQ(readInertialRecording(openFrames(folder.path(""))->inertialFiles()).samples.size(), 3U);
+  EXPECT_EQ(readInertialRecording(openFrames(folder.path(""))->inertialFiles()).camera_readout_s, 0);
+  folder.write("imu.yaml", unit_text + "readout_s: 0.024\n");
+  EXPECT_EQ(readInertialRecording(openFrames(folder.path(""))->inertialFiles()).camera_readout_s, 0.024);
 }
 
 TEST(InertialFile, EurocsIsRead) {

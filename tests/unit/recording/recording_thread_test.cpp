@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <filesystem>
 
 #include "unit/recording/made_recording.h"
 
@@ -68,6 +69,27 @@ TEST(RecordingThread, RecordsWhatIsPosted) {
   ASSERT_EQ(recording.decisions.dropped.size(), 1U);
   EXPECT_EQ(recording.frames[19].problem, "no signal");
   expectFramesAsMade(recording, madeFrame);
+}
+
+// Frames that are made faster than they can be packed.
+TEST(RecordingThread, InHasteFramesAreStoredAsTheyAre) {
+  const TemporaryFolder folder;
+  RecordingThread thread(folder.path("recording"), madeDescription(), noLimits(), 300);
+  std::vector<RecordingEntry> entries;
+  for (int i = 0; i < 200; ++i) {
+    entries.push_back(frameEntry(i));
+    entries.back().images = imagesOf(flatFrame(i));
+  }
+  for (const RecordingEntry& entry : entries) EXPECT_TRUE(thread.post(entry));
+  EXPECT_EQ(thread.stop().frames, 200);
+  const Recording recording = readRecording(folder.path("recording"));
+  expectFramesAsMade(recording, flatFrame);
+  int stored = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder.path("recording/rgb"))) {
+    stored += file.file_size() >= made_width * made_height ? 1 : 0;
+  }
+  EXPECT_GT(stored, 0);
+  EXPECT_LT(stored, 200) << "the last ones are packed again";
 }
 
 TEST(RecordingThread, ALongReasonIsCutOff) {
@@ -192,10 +214,10 @@ TEST(RecordingThread, OnlyTheThreadItselfIsNice) {
   const TemporaryFolder folder;
   const int before = getpriority(PRIO_PROCESS, 0);
   RecordingThread thread(folder.path("recording"), madeDescription(), noLimits());
-  for (int i = 0; i < 1000 && niceLevels() != std::vector<int>{10}; ++i) {
+  for (int i = 0; i < 1000 && niceLevels() != std::vector<int>{5}; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  EXPECT_EQ(niceLevels(), std::vector<int>{10});
+  EXPECT_EQ(niceLevels(), std::vector<int>{5});
   EXPECT_EQ(getpriority(PRIO_PROCESS, 0), before);
 }
 
