@@ -13,6 +13,7 @@ namespace {
 constexpr double degree = M_PI / 180;
 
 struct Searched {
+  std::shared_ptr<const FrameImages> images;  // of the first keyframe
   Map map;
   SearchPoints points;
 };
@@ -23,11 +24,12 @@ const Searched& room() {
     Searched result;
     result.map = makePlace(7, placeCamera(), {Pose(), Pose{rotationExp({0, 0.05, 0}), {0.1, 0, 0}}});
     const Keyframe& source = result.map.keyframes.front();
+    result.images = source.images.get();
     for (const auto& [id, point] : result.map.points) {
       const PointObservation* seen = findObservation(source, id);
       if (!seen) continue;
       const Measurement& m = seen->measurement;
-      result.points.push_back({id, worldPosition(result.map, point), source.images.get(), source.world_T_camera,
+      result.points.push_back({id, worldPosition(result.map, point), result.images.get(), source.world_T_camera,
                                m.pixel.cast<float>(), m.normal.cast<float>(), seen->corner,
                                static_cast<float>(m.sigma_normal), static_cast<float>(m.sigma_tangent)});
     }
