@@ -66,7 +66,7 @@ MeasuredBeside measuredBeside(const FrameSource& source, const MeasuredUse& use,
     throw InputError("--wheels: not with --realtime, where the wheels are not used yet");
   }
   if (use.wheels && (use.imu || configuration.inertia.is_used)) {
-    throw InputError("--wheels: not together with inertia yet; each of them tells metres by itself");
+    throw InputError("--wheels: not together with --imu (imu.enabled) yet; each of them tells metres by itself");
   }
   MeasuredBeside measured;
   measured.inertia = inertiaBeside(source, use, configuration);

@@ -161,8 +161,8 @@ const InertialAlignment* Mapper::knownAlignment() const {
 }
 
 // Scale, gravity and biases are found with the keyframes held, and then adjusted together with all of the world: what
-// bends a map looks like another scale or bias to the one alone. Once they are known, they follow each keyframe, and now
-// and then all is adjusted together again, until the scale is known well.
+// bends a map looks like another scale or bias to the one alone. Once they are known, they follow each keyframe, and
+// now and then all is adjusted together again, until the scale is known well.
 void Mapper::alignToEarth() {
   if (!options_.local_adjustment.inertia) return;
   InertialAlignment& alignment = map_.inertia[world_];
