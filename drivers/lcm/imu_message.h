@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "drivers/lcm/message_receiver.h"
 #include "inertia/inertial_unit.h"
 
 namespace edgeslam {
@@ -11,5 +12,7 @@ namespace edgeslam {
 // None where the bytes are no imu_t, or it is nothing that a unit can have measured (isUsable()), or its time stamp is
 // negative or over 1e15.
 std::optional<InertialSample> checkImu(const void* data, std::size_t bytes);
+
+using ImuReceiver = MessageReceiver<InertialSample, 4096>;  // over 2 s at 2000 a second
 
 }  // namespace edgeslam

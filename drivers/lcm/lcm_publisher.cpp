@@ -25,9 +25,10 @@ LcmPublisher::LcmPublisher(const LcmOptions& options, const Pose& body_T_camera)
   if (canReceive(options_.url)) {
     receiver_ = std::make_unique<CommandReceiver>(options_.url, options_.command_channel);
     if (!options_.wheels_channel.empty()) {
-      wheels_ = std::make_unique<OdometryReceiver>(options_.url, options_.wheels_channel);
+      wheels_ = std::make_unique<OdometryReceiver>(options_.url, options_.wheels_channel, "odometry", checkOdometry);
     }
-    if (!options_.imu_channel.empty()) imu_ = std::make_unique<ImuReceiver>(options_.url, options_.imu_channel);
+    if (!options_.imu_channel.empty())
+      imu_ = std::make_unique<ImuReceiver>(options_.url, options_.imu_channel, "imu", checkImu);
   }
 }
 

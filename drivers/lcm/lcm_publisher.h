@@ -9,12 +9,12 @@
 
 #include "drivers/lcm/body_odometry.h"
 #include "drivers/lcm/command_receiver.h"
-#include "drivers/lcm/imu_receiver.h"
+#include "drivers/lcm/imu_message.h"
 #include "drivers/lcm/lcm_options.h"
 #include "drivers/lcm/lcm_sender.h"
 #include "drivers/lcm/map_messages.h"
 #include "drivers/lcm/messages.h"
-#include "drivers/lcm/odometry_receiver.h"
+#include "drivers/lcm/odometry.h"
 #include "drivers/lcm/status_message.h"
 
 namespace edgeslam {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "drivers/lcm/message_receiver.h"
 #include "wheels/odometry_pose.h"
 
 namespace edgeslam {
@@ -12,5 +13,7 @@ namespace edgeslam {
 // None where the bytes are no pose_t, or the pose none that can be: not finite, over 1e7 m away, a quaternion whose
 // norm is off 1 by over 0.01, a time stamp that is negative or over 1e17.
 std::optional<OdometryPose> checkOdometry(const void* data, std::size_t bytes);
+
+using OdometryReceiver = MessageReceiver<OdometryPose, 1024>;  // over 1 s at 1000 a second
 
 }  // namespace edgeslam

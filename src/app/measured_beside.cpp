@@ -39,7 +39,6 @@ std::vector<InertialSample> inertiaBeside(const FrameSource& source, const Measu
     InertialRecording beside = readInertialRecording(files);
     configured.unit = beside.unit;
     configured.has_unit = true;
-    configured.camera_readout_s = beside.camera_readout_s;
     samples = std::move(beside.samples);
   }
   configuration.settings = settingsWithInertia(configuration);

@@ -208,7 +208,7 @@ Camera asConfigured(Camera camera, const Configuration& configuration) {
 Camera withReadoutOfUnit(Camera camera, const Configuration& configuration) {
   const InertiaConfiguration& inertia = configuration.inertia;
   if (inertia.is_used && !configuration.has_readout && camera.readout_s == 0) {
-    camera.readout_s = inertia.camera_readout_s;
+    camera.readout_s = inertia.unit.camera_readout_s;
   }
   return camera;
 }

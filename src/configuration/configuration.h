@@ -38,8 +38,7 @@ struct InertiaConfiguration {
   std::string channel = "IMU";  // of LCM, for live runs
   bool has_unit = false;        // the file says where it sits; otherwise `unit` has only its noise
   InertialUnit unit;
-  double time_offset_s = 0;     // as unit.offset_ns
-  double camera_readout_s = 0;  // as Camera::readout_s, where it was found with the unit; 0: it was not
+  double time_offset_s = 0;  // as unit.offset_ns
 };
 
 struct Configuration {

@@ -25,7 +25,6 @@ void readUnitFile(const YAML::Node& section, const YAML::Node& calibration, Conf
   try {
     inertia.unit = readInertialUnit((folder / calibration.Scalar()).string());
     inertia.time_offset_s = static_cast<double>(inertia.unit.offset_ns) * 1e-9;
-    inertia.camera_readout_s = readReadoutOfUnit((folder / calibration.Scalar()).string());
     inertia.has_unit = true;
   } catch (const InputError& error) {
     tell(calibration.Mark().line, std::string("imu.calibration: ") + error.what());

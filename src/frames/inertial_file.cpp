@@ -124,16 +124,13 @@ InertialUnit readInertialUnit(const std::string& path) {
       if (std::abs(offset_s) > 10) section.failAt("time_offset_s", "'time_offset_s' must be -10 to 10 seconds");
       unit.offset_ns = static_cast<std::int64_t>(std::llround(offset_s * 1e9));
     }
-    if (section.has("readout_s") && std::abs(section.number("readout_s")) > largest_readout_s) {
-      section.failAt("readout_s", "'readout_s' must be -0.2 to 0.2 seconds");
+    if (section.has("readout_s")) {
+      unit.camera_readout_s = section.number("readout_s");
+      if (std::abs(unit.camera_readout_s) > largest_readout_s) {
+        section.failAt("readout_s", "'readout_s' must be -0.2 to 0.2 seconds");
+      }
     }
     return unit;
-  });
-}
-
-double readReadoutOfUnit(const std::string& path) {
-  return readYaml(path, "inertial unit", [](const YamlSection& section) {
-    return section.has("readout_s") ? section.number("readout_s") : 0.0;
   });
 }
 
@@ -143,16 +140,9 @@ std::vector<InertialSample> readInertialSamples(const InertialFiles& files) {
 }
 
 InertialRecording readInertialRecording(const InertialFiles& files) {
-  InertialRecording recording;
-  recording.samples = readInertialSamples(files);
+  std::vector<InertialSample> samples = readInertialSamples(files);
   if (files.unit.empty()) throw InputError(files.samples + ": no imu.yaml lies beside it, with imu_T_camera");
-  if (files.euroc_camera.empty()) {
-    recording.unit = readInertialUnit(files.unit);
-    recording.camera_readout_s = readReadoutOfUnit(files.unit);
-  } else {
-    recording.unit = readEurocUnit(files);
-  }
-  return recording;
+  return {files.euroc_camera.empty() ? readInertialUnit(files.unit) : readEurocUnit(files), std::move(samples)};
 }
 
 }  // namespace edgeslam

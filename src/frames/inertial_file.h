@@ -18,7 +18,6 @@ struct InertialFiles {
 struct InertialRecording {
   InertialUnit unit;
   std::vector<InertialSample> samples;  // time stamps ascend
-  double camera_readout_s = 0;          // as Camera::readout_s, where it was found with the unit; 0: it was not
 };
 
 // Lines of time stamp [s, or whole ns], rate x y z [rad/s], specific force x y z [m/s^2], parted by commas or blanks; a
@@ -34,9 +33,6 @@ std::vector<InertialSample> readInertialSamples(const InertialFiles& files);
 // units), time_offset_s (Kalibr's timeshift_cam_imu: what is added to a frame's time for the unit's clock), readout_s
 // (of the camera, as in its calibration), rate_hz. Throws InputError.
 InertialUnit readInertialUnit(const std::string& path);
-
-// Its readout_s, 0 where it has none. Throws InputError.
-double readReadoutOfUnit(const std::string& path);
 
 // Throws InputError where there is none, or one of the files cannot be used.
 InertialRecording readInertialRecording(const InertialFiles& files);

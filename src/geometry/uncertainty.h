@@ -3,11 +3,19 @@
 // r x x + s x (a small similarity).
 #pragma once
 
+#include <Eigen/Cholesky>
+
 #include "geometry/pose.h"
 
 namespace edgeslam {
 
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
+
+// W with W^T W the inverse of a covariance.
+inline Eigen::Matrix3d whiteningOf(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d lower = covariance.llt().matrixL();
+  return lower.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
+}
 
 // The update of camera b that goes with an update of camera a which takes b along.
 inline Matrix7d updateCarrying(const Pose& a_T_b) {

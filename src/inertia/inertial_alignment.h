@@ -6,6 +6,10 @@
 
 namespace edgeslam {
 
+// Errors of keyframes hang together, and bend the map: what is found of it is known so many times less well than they
+// say.
+constexpr double honest_times = 2;
+
 struct InertialAlignment {
   InertialBias bias;                                  // of the unit, lately
   double rate_bias_sigma = 0.1;                       // standard deviation, each axis [rad/s]
@@ -14,6 +18,7 @@ struct InertialAlignment {
   double scale_sigma = 0;                             // standard deviation of it, share of it
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // the map's frame [m/s^2], standard_gravity long
   double force_bias_sigma = 0;                        // standard deviation, each axis [m/s^2]
+  double adjusted_scale_sigma = 1;                    // as scale_sigma, when it was last adjusted with the map
 };
 
 // Turns the map's frame so that z is up, about the horizontal axis that does it with the least turn.

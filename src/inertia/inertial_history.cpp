@@ -84,20 +84,4 @@ std::optional<PreintegratedMotion> InertialHistory::between(std::int64_t from_ns
   return motion;
 }
 
-std::optional<InertialSample> InertialHistory::mean(std::int64_t until_ns, double seconds) const {
-  until_ns += unit_.offset_ns;
-  const std::size_t end = firstAfter(until_ns);
-  const std::size_t begin = firstAfter(until_ns - static_cast<std::int64_t>(seconds * 1e9));
-  if (begin == 0 || begin >= end) return {};
-  InertialSample mean;
-  for (std::size_t place = begin; place < end; ++place) {
-    mean.rate += at(place).rate;
-    mean.force += at(place).force;
-  }
-  mean.time_ns = at(end - 1).time_ns;
-  mean.rate /= static_cast<double>(end - begin);
-  mean.force /= static_cast<double>(end - begin);
-  return mean;
-}
-
 }  // namespace edgeslam

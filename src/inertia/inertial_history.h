@@ -28,9 +28,6 @@ class InertialHistory {
   // taken to last.
   std::optional<PreintegratedMotion> between(std::int64_t from_ns, std::int64_t to_ns, const InertialBias& bias) const;
 
-  // Mean of what was measured in the `seconds` before a time of the camera's clock; none where it was not.
-  std::optional<InertialSample> mean(std::int64_t until_ns, double seconds) const;
-
   static constexpr double longest_gap_s = 0.06, longest_wait_s = 0.02;
   static constexpr std::size_t most_samples = 8192;  // two seconds of the fastest units
 

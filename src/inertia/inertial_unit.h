@@ -21,12 +21,13 @@ struct InertialBias {
 
 // Noise as densities, as Kalibr and data sheets give it.
 struct InertialUnit {
-  Pose imu_T_camera;           // [m]
-  double rate_noise = 2e-3;    // [rad/s/sqrt(Hz)]
-  double rate_walk = 2e-5;     // of the bias [rad/s^2/sqrt(Hz)]
-  double force_noise = 2e-2;   // [m/s^2/sqrt(Hz)]
-  double force_walk = 2e-3;    // of the bias [m/s^3/sqrt(Hz)]
-  std::int64_t offset_ns = 0;  // a frame of the camera's time t was taken at t + offset_ns of the unit's clock
+  Pose imu_T_camera;            // [m]
+  double rate_noise = 2e-3;     // [rad/s/sqrt(Hz)]
+  double rate_walk = 2e-5;      // of the bias [rad/s^2/sqrt(Hz)]
+  double force_noise = 2e-2;    // [m/s^2/sqrt(Hz)]
+  double force_walk = 2e-3;     // of the bias [m/s^3/sqrt(Hz)]
+  double camera_readout_s = 0;  // as Camera::readout_s, where it was found with the unit; 0: it was not
+  std::int64_t offset_ns = 0;   // a frame of the camera's time t was taken at t + offset_ns of the unit's clock
 };
 
 constexpr double standard_gravity = 9.80665;  // [m/s^2]

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
+#include "files/format_text.h"
 #include "geometry/median.h"
 
 namespace edgeslam {
@@ -15,23 +15,17 @@ constexpr double farthest_clock_s = 1;  // what is farther off is another clock
 constexpr double latest_s = 0.02;       // behind its frame: more, and frames are tracked without
 constexpr double least_rate_hz = 50;
 
-std::string withNumber(const char* format, double number) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), format, number);
-  return text.data();
-}
-
 }  // namespace
 
 std::string unitsProblem(double median_force, double median_rate) {
   constexpr double least_force = 3, most_force = 40, most_rate = 12;
   if (median_force < least_force || median_force > most_force) {
-    return withNumber("the specific force is %.3g in the median; expected about 9.8, in m/s^2 with gravity included",
-                      median_force) +
+    return formatted("the specific force is %.3g in the median; expected about 9.8, in m/s^2 with gravity included",
+                     median_force) +
            (median_force > 0.5 && median_force < 1.5 ? ": is it in multiples of g?" : "");
   }
   if (median_rate > most_rate) {
-    return withNumber("the rate of turning is %.3g in the median; expected rad/s: is it in degrees?", median_rate);
+    return formatted("the rate of turning is %.3g in the median; expected rad/s: is it in degrees?", median_rate);
   }
   return "";
 }
@@ -53,9 +47,8 @@ void InertialWatch::addFrame(std::int64_t time_ns) {
 std::string InertialWatch::problem() const {
   const std::int64_t since_ns = frames_with_ == 0 ? first_frame_ns_ : frame_with_ns_;
   if (const double silence_s = static_cast<double>(frame_ns_ - since_ns) * 1e-9; silence_s > longest_silence_s) {
-    return withNumber(
-        frames_with_ == 0 ? "nothing has come from it for %.0f s" : "nothing comes from it any more, for %.0f s",
-        silence_s);
+    return frames_with_ == 0 ? formatted("nothing has come from it for %.0f s", silence_s)
+                             : formatted("nothing comes from it any more, for %.0f s", silence_s);
   }
   if (count_ < window || frames_with_ < behind_s_.size()) return "";
   std::vector<double> forces, rates, times_s;
@@ -69,12 +62,12 @@ std::string InertialWatch::problem() const {
   }
   const double behind_s = upperMedian(std::vector<double>(behind_s_.begin(), behind_s_.end()));
   if (std::abs(behind_s) > farthest_clock_s) {
-    return withNumber("its time stamps are %.3g s from the camera's; both must be of CLOCK_MONOTONIC", behind_s);
+    return formatted("its time stamps are %.3g s from the camera's; both must be of CLOCK_MONOTONIC", behind_s);
   }
-  if (behind_s > latest_s) return withNumber("it comes %.0f ms late; frames are tracked without it", 1e3 * behind_s);
+  if (behind_s > latest_s) return formatted("it comes %.0f ms late; frames are tracked without it", 1e3 * behind_s);
   const auto [first, last] = std::minmax_element(times_s.begin(), times_s.end());
   const double rate_hz = static_cast<double>(window - 1) / (*last - *first);
-  return rate_hz < least_rate_hz ? withNumber("it comes %.0f times a second; 100 are needed", rate_hz) : "";
+  return rate_hz < least_rate_hz ? formatted("it comes %.0f times a second; 100 are needed", rate_hz) : "";
 }
 
 }  // namespace edgeslam

@@ -24,7 +24,6 @@ constexpr double largest_turn_error = 0.3;     // of what the gyroscope contradi
 constexpr double largest_turn_error_rad = 0.1;
 constexpr double least_scale_sigma = 3e-3;  // of what is known, share of it: the map bends
 constexpr int iterations = 8;
-constexpr double honest_times = 2;  // errors of keyframes hang together, and bend the map
 
 double squared(double value) { return value * value; }
 

@@ -1,7 +1,8 @@
 #include "mapping/inertial_terms.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include "geometry/uncertainty.h"
 
 namespace edgeslam {
 namespace {
@@ -14,12 +15,6 @@ constexpr double free_rate_bias_sigma = 0.02;  // [rad/s]
 constexpr double free_force_bias_sigma = 0.3;  // [m/s^2]
 
 double squared(double value) { return value * value; }
-
-// W with W^T W the inverse of a covariance.
-Eigen::Matrix3d whiteningOf(const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix3d lower = covariance.llt().matrixL();
-  return lower.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
-}
 
 BundleTurn turnOf(const InertialLink& link, const InertialBias& bias, double rate_bias_sigma,
                   const Eigen::Quaterniond& camera_R_imu, int first, int second) {

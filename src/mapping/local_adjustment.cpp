@@ -106,13 +106,11 @@ const InertialAlignment* alignmentOf(const LocalAdjustmentOptions& options, cons
   return options.inertia && known != map.inertia.end() ? &known->second : nullptr;
 }
 
-// What a map's measurements err by hangs together, so that all is known less well than they say.
 void readInertia(const BundleInertia& adjusted, const InertiaMatrix& covariance, InertialAlignment& alignment) {
-  constexpr double honest_times = 2;
   alignment.metres_a_unit = adjusted.metres_a_unit;
   alignment.gravity = adjusted.gravity;
   alignment.bias = {adjusted.bias_change.head<3>(), adjusted.bias_change.tail<3>()};
-  alignment.scale_sigma = honest_times * std::sqrt(covariance(0, 0));
+  alignment.scale_sigma = alignment.adjusted_scale_sigma = honest_times * std::sqrt(covariance(0, 0));
   alignment.rate_bias_sigma = honest_times * std::sqrt(covariance.diagonal().segment<3>(3).maxCoeff());
   alignment.force_bias_sigma = honest_times * std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
 }

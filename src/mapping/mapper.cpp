@@ -173,7 +173,7 @@ void Mapper::alignToEarth() {
   if (was_known) {
     if (estimate.lacking.empty()) alignment = estimate.alignment;
     const bool is_due = ++keyframes_since_alignment_ >= options_.alignment_interval;
-    if (is_due && adjusted_scale_sigma_ > options_.well_known_scale_sigma) alignWithMap(alignment);
+    if (is_due && alignment.adjusted_scale_sigma > options_.well_known_scale_sigma) alignWithMap(alignment);
     return;
   }
   alignment = estimate.alignment;
@@ -191,8 +191,10 @@ void Mapper::alignWithMap(const InertialAlignment& start) {
   LocalAdjustmentOptions local = options_.local_adjustment;
   local.inertia_is_free = true;
   if (!adjustGlobally(camera_, options_.global_adjustment, local, aligned)) return;
-  adjusted_scale_sigma_ = alignment.scale_sigma;
-  if (!(alignment.scale_sigma < options_.inertial_alignment.largest_scale_sigma)) return;
+  if (!(alignment.scale_sigma < options_.inertial_alignment.largest_scale_sigma)) {
+    if (!start.is_known) lacking_ = "inertia: the scale is not known yet; the speed must change more";
+    return;
+  }
   alignment.is_known = true;
   lacking_.clear();
   map_ = std::move(aligned);

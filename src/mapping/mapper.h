@@ -129,7 +129,6 @@ class Mapper {
   std::string lacking_;
   std::string lacking_for_wheels_;
   int keyframes_since_alignment_ = 0;
-  double adjusted_scale_sigma_ = 1;  // after the last of these adjustments, share of the scale
   bool initialised_ = false;
   bool start_stood_ = false;  // the latest one
   int world_ = -1;

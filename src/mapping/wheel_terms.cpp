@@ -1,8 +1,9 @@
 #include "mapping/wheel_terms.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
+
+#include "geometry/uncertainty.h"
 
 namespace edgeslam {
 namespace {
@@ -15,12 +16,6 @@ constexpr double least_slip = 0.05;  // [map units]: the scene of the map's star
 // wheels say is told against them by as much.
 constexpr double claim_of_points = 8;
 constexpr double huber_times = 12;  // of the whitened error, then: from three standard deviations on it counts linearly
-
-// W with W^T W the inverse of a covariance.
-Eigen::Matrix3d whiteningOf(const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix3d lower = covariance.llt().matrixL();
-  return lower.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
-}
 
 Eigen::Matrix3d turnWhitening(const WheelMotion& motion) {
   return whiteningOf(motion.covariance.bottomRightCorner<3, 3>());

@@ -12,7 +12,6 @@ struct LiveCounts {
   std::int64_t passed_over = 0;     // a newer frame was there when tracking came to take it
   std::int64_t mapping_behind = 0;  // frames that told mapping nothing, its queue being nearly full
   std::int64_t not_published = 0;   // results for which the publishing queue was full
-  std::int64_t inertia_lost = 0;    // samples that were not usable, or for which there was no room
   std::size_t messages_waiting = 0;
   std::size_t results_waiting = 0;
   std::int64_t map_changes = 0;  // messages and corrections that mapping took in

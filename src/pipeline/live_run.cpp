@@ -78,10 +78,8 @@ void LiveRun::handOver() {
   channels_.frame_ready.post();
 }
 
-bool LiveRun::add(const InertialSample& sample) {
-  const bool is_taken = isUsable(sample) && channels_.inertia.push(sample);
-  if (!is_taken) inertia_lost_.fetch_add(1, std::memory_order_relaxed);
-  return is_taken;
+void LiveRun::add(const InertialSample& sample) {
+  if (isUsable(sample)) channels_.inertia.push(sample);
 }
 
 void LiveRun::stop(bool settle) {
@@ -108,7 +106,6 @@ const Mapper& LiveRun::mapper() const {
 LiveCounts LiveRun::counts() const {
   LiveCounts counts;
   counts.captured = captured_.load(std::memory_order_relaxed);
-  counts.inertia_lost = inertia_lost_.load(std::memory_order_relaxed);
   tracking_.count(counts);
   counts.messages_waiting = channels_.messages.waiting();
   counts.results_waiting = channels_.results.waiting();

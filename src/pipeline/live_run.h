@@ -49,9 +49,9 @@ class LiveRun {
   FrameSlot& nextSlot() { return channels_.frames.writing(); }
   void handOver();
 
-  // What an inertial unit measured, in order, from one thread, which may be another than capture's. Never waits. False
-  // where it is lost: it is not usable (isUsable()), or tracking is far behind.
-  bool add(const InertialSample& sample);
+  // What an inertial unit measured, in order, from one thread, which may be another than capture's. Never waits: what
+  // is not usable (isUsable()), or comes while tracking is seconds behind, is left out.
+  void add(const InertialSample& sample);
 
   // From any thread: the map as it is comes in a report, as soon as mapping is between two messages; without keyframes
   // where there is none yet.
@@ -79,7 +79,7 @@ class LiveRun {
   LiveMapping mapping_;
   LivePlaces places_;
   LivePublishing publishing_;
-  std::atomic<std::int64_t> captured_{0}, inertia_lost_{0};
+  std::atomic<std::int64_t> captured_{0};
   std::vector<RefusedSetup> problems_;
   std::thread tracking_thread_, mapping_thread_, places_thread_, publishing_thread_;
 };

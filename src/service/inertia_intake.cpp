@@ -1,20 +1,10 @@
 #include "service/inertia_intake.h"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 
+#include "files/format_text.h"
+
 namespace edgeslam {
-namespace {
-
-// Numbers change each second.
-std::string withoutDigits(std::string text) {
-  text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) || c == '.'; }),
-             text.end());
-  return text;
-}
-
-}  // namespace
 
 InertiaIntake::InertiaIntake(ImuReceiver& receiver, std::int64_t offset_ns, CaptureLink& link, EventLog& log)
     : receiver_(receiver), link_(link), log_(log), watch_(offset_ns) {}

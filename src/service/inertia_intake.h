@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/frame_capture/reopening_camera.h"
-#include "drivers/lcm/imu_receiver.h"
+#include "drivers/lcm/imu_message.h"
 #include "inertia/inertial_watch.h"
 #include "pipeline/live_run.h"
 #include "service/capture_link.h"

@@ -1,7 +1,6 @@
 #include "service/metric_scale.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -18,13 +17,6 @@ constexpr double largest_tilt = 0.017;  // of what is published as up [rad]
 std::string scaleText(const ScaleState& scale) {
   return formatted("the scale is %.6g metres a map unit, standard deviation %.2g %%", scale.metres_per_unit,
                    100 * scale.sigma);
-}
-
-// Numbers change each second.
-std::string withoutDigits(std::string text) {
-  text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) || c == '.'; }),
-             text.end());
-  return text;
 }
 
 }  // namespace

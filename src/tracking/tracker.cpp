@@ -82,8 +82,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       preparation_(camera, {edges, points.accuracy, options.blur_gate, pyramidLevels(options)}),
       location_(camera, locationOptions(options)),
       keyframes_(camera, options.keyframes, points),
-      inertia_(options.inertia),
-      wheels_(options.wheels),
+      motion_(options.inertia, options.inertia_only, options.wheels, options.wheels_only),
       noise_(options.noise),
       scratch_memory_(new std::byte[scratch_size]),
       scratch_(scratch_memory_.get(), scratch_size),
@@ -112,7 +111,7 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   Work work{time_ns, mapping_busy, result, for_mapping, StageClock(result.times)};
 
   const bool is_sharp = preparation_.prepare(frame_index, time_ns, grey, frame_, work.clock);  // P1 to P4
-  frame_.wheels = wheels_.at(time_ns);
+  frame_.wheels = motion_.wheelsAt(time_ns);
   frame_.is_by_wheels = false;
   const double without_s = lost_since_ns_ < 0 ? 0 : static_cast<double>(time_ns - lost_since_ns_) * 1e-9;
   const bool any_will_do = !mapStands() || is_lost_ || without_s > options_.blur_gate.longest_rejection_s;
@@ -157,7 +156,7 @@ void Tracker::helpStart(TrackedFrame& for_mapping) {
   }
   keepEdgesOfStart(last_);
   describe(camera_, last_, {kind, keyframe, "first", 1, 0, view_.origin_frame}, for_mapping);
-  for_mapping.inertia = inertia_.linkSinceStart(last_.images->time_ns);
+  for_mapping.inertia = motion_.inertia().linkSinceStart(last_.images->time_ns);
 }
 
 // Long after the last frame that was located its points are not looked for any more.
@@ -167,8 +166,8 @@ bool Tracker::locate(Work& work) {
   const bool regains = lost_since_ns_ >= 0;
   if (regains && static_cast<double>(work.time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds) return false;
   scratch_.release();
-  const LocationPrior prior{predictedCamera(work.time_ns).world_T_camera, regains, preparation_.accuracy(),
-                            motion_.whileRowsAreRead(lastCamera(), work.time_ns, mapStands())};
+  const LocationPrior prior{motion_.predict(last_, work.time_ns, view_).world_T_camera, regains,
+                            preparation_.accuracy(), motion_.whileRowsAreRead(last_, work.time_ns, mapStands())};
   return location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
 }
 
@@ -262,9 +261,8 @@ void Tracker::beginWorld() {
   is_lost_ = false;
   lost_since_ns_ = -1;
   last_.forget();
-  inertia_.forget();
-  inertia_.forgetLink();
-  wheels_.forget();
+  motion_.forget();
+  motion_.inertia().forgetLink();
   keyframes_.beginWorld();
 }
 
@@ -292,9 +290,7 @@ bool Tracker::startMap(const char* reason, Work& work) {
   tracks_at_start_ = frame_.tracks.size();
   faded_frames_ = 0;
   motion_.forget();
-  inertia_.forget();
-  wheels_.forget();
-  inertia_.beginStart(work.for_mapping.keyframe, work.time_ns);
+  motion_.inertia().beginStart(work.for_mapping.keyframe, work.time_ns);
   std::swap(last_, frame_);
   return true;
 }
@@ -329,7 +325,7 @@ void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& wor
   const KeyframeId id = keyframes_.make(frame, preparation_.accuracy());
   keepStraightEdges(camera_, straight, noise_.factor(), frame, &scratch_);
   describe(camera_, frame, {FrameKind::keyframe, id, reason, noise_.factor(), view_.world}, work.for_mapping);
-  work.for_mapping.inertia = inertia_.linkTo(id, frame.images->time_ns, view_.inertia);
+  work.for_mapping.inertia = motion_.inertia().linkTo(id, frame.images->time_ns, view_.inertia);
   // Until mapping answers, the keyframe stands where tracking saw it.
   view_.keyframes.push_back({id, frame.world_T_camera, nullptr, Matrix7d::Zero(), frame.twist});
   work.clock.finished(Stage::choice_of_points);
@@ -418,15 +414,8 @@ void Tracker::remember() {
   if (is_lost_) preparation_.forgetSharpness();
   is_lost_ = false;
   lost_since_ns_ = -1;
-  motion_.observe(lastCamera(), {frame_.images->time_ns, frame_.world_T_camera});
-  inertia_.observe({frame_.images->time_ns, frame_.world_T_camera},
-                   std::sqrt(withSharedNoise(frame_.covariance).topLeftCorner<3, 3>().trace() / 3));
-  if (!frame_.is_by_wheels) {
-    wheels_.observe({frame_.images->time_ns, frame_.world_T_camera}, frame_.covariance, view_.wheels);
-    located_place_ = frame_.wheels;
-    located_covariance_ = frame_.covariance;
-    located_ns_ = frame_.images->time_ns;
-  }
+  const double sigma = std::sqrt(withSharedNoise(frame_.covariance).topLeftCorner<3, 3>().trace() / 3);
+  motion_.observe(last_, frame_, sigma, view_);
   if (!options_.map_is_frozen) keyframes_.follow(frame_);
   std::swap(last_, frame_);
 }
@@ -442,7 +431,7 @@ void Tracker::skip(std::int64_t frame_index, std::int64_t time_ns, const std::st
 void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult& result) const {
   result.reason = reason;
   if (!last_.isThere() || !mapStands()) return;
-  const InertialPrediction prediction = predictedCamera(time_ns);
+  const InertialPrediction prediction = motion_.predict(last_, time_ns, view_);
   result.state = TrackingState::predicted;
   result.has_pose = true;
   result.world = view_.world;
@@ -452,71 +441,21 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult
   result.covariance = prediction.covariance;
   result.world_covariance = worldCovariance(camera_, withSharedNoise(result.covariance), map_covariance_,
                                             last_.outlier_share, options_.uncertainty);
-  goOnByInertia(prediction, result);
-  goOnByWheels(result);
+  if (view_.keyframes.empty()) return;
+  if (motion_.isKnownByInertia(prediction, last_, time_ns)) return goOnBy("inertia only", result);
+  if (carriedByWheels(time_ns)) goOnBy("wheels only", result);
 }
 
-// By the wheels or inertia where these were measured, else as the camera moved on.
-InertialPrediction Tracker::predictedCamera(std::int64_t time_ns) const {
-  if (const std::optional<WheelPrediction> by_wheels = predictedByWheels(time_ns)) {
-    return {by_wheels->world_T_camera, by_wheels->covariance, false};
-  }
-  const double seconds = static_cast<double>(time_ns - last_.images->time_ns) * 1e-9;
-  const InertialPrediction by_camera{motion_.predict(lastCamera(), time_ns),
-                                     MotionModel::predictedCovariance(last_.covariance, seconds), false};
-  return inertia_.predict(lastCamera(), last_.covariance, time_ns, view_.inertia, by_camera).value_or(by_camera);
-}
-
-// A pose that inertia has measured is as good as its covariance says.
-void Tracker::goOnByInertia(const InertialPrediction& prediction, FrameResult& result) const {
-  if (!prediction.knows_position || view_.keyframes.empty()) return;
-  const InertiaOnlyOptions& options = options_.inertia_only;
-  const double seconds = static_cast<double>(result.time_ns - last_.images->time_ns) * 1e-9;
-  const Matrix6d& covariance = prediction.covariance;
-  if (seconds > options.longest_s ||
-      std::sqrt(covariance.diagonal().head<3>().maxCoeff()) > options.largest_position_deviation * last_.scene_depth ||
-      std::sqrt(covariance.diagonal().tail<3>().maxCoeff()) > options.largest_rotation_deviation) {
-    return;
-  }
-  result.state = TrackingState::tracking;
-  result.reason.insert(0, result.reason.empty() ? "inertia only" : "inertia only: ");
-  result.reference = view_.keyframes.back().id;
-  result.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * result.world_T_camera;
-}
-
-std::optional<WheelPrediction> Tracker::predictedByWheels(std::int64_t time_ns) const {
-  if (!options_.wheels || last_.wheels.piece < 0) return std::nullopt;
-  const double seconds = static_cast<double>(time_ns - last_.images->time_ns) * 1e-9;
-  const WheelPrediction by_camera{motion_.predict(lastCamera(), time_ns),
-                                  MotionModel::predictedCovariance(last_.covariance, seconds), false, false};
-  return wheels_.predict({lastCamera(), last_.wheels, located_place_, located_covariance_}, time_ns, view_.wheels,
-                         by_camera);
-}
-
-// A pose by the wheels is as good as its covariance says, unless what the camera sees contradicts them.
 std::optional<WheelPrediction> Tracker::carriedByWheels(std::int64_t time_ns) const {
   if (!last_.isThere() || !mapStands() || view_.keyframes.empty()) return std::nullopt;
-  std::optional<WheelPrediction> prediction = predictedByWheels(time_ns);
-  if (!prediction || !prediction->knows_position) return std::nullopt;
-  const WheelsOnlyOptions& options = options_.wheels_only;
-  const Matrix6d& covariance = prediction->covariance;
-  if (static_cast<double>(time_ns - located_ns_) * 1e-9 > options.longest_s ||
-      std::sqrt(covariance.diagonal().head<3>().maxCoeff()) > options.largest_position_deviation * last_.scene_depth ||
-      std::sqrt(covariance.diagonal().tail<3>().maxCoeff()) > options.largest_rotation_deviation) {
-    return std::nullopt;
-  }
-  const bool is_of_frame = frame_.isThere() && frame_.images->time_ns == time_ns && frame_.edges && last_.edges;
-  const bool image_changed =
-      is_of_frame && static_cast<double>(frame_.edges->points.size()) >=
-                         options.contradicting_edges * static_cast<double>(last_.edges->points.size());
-  if (prediction->stood && image_changed) return std::nullopt;
-  return prediction;
+  return motion_.carriedByWheels(last_, frame_, time_ns, view_);
 }
 
-void Tracker::goOnByWheels(FrameResult& result) const {
-  if (isGoodPose(result.state) || !carriedByWheels(result.time_ns)) return;
+// What is known so well is a pose as good as a measured one, whatever it is `by`.
+void Tracker::goOnBy(std::string_view by, FrameResult& result) const {
   result.state = TrackingState::tracking;
-  result.reason.insert(0, result.reason.empty() ? "wheels only" : "wheels only: ");
+  if (!result.reason.empty()) result.reason.insert(0, ": ");
+  result.reason.insert(0, by);
   result.reference = view_.keyframes.back().id;
   result.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * result.world_T_camera;
 }
@@ -556,7 +495,7 @@ void Tracker::keepLostFrame(TrackedFrame& description) {
   frame_is_lost_ = false;
   kept_number_ = keyframes_.numberOfLost();
   describe(camera_, kept_, {FrameKind::lost, kept_number_, "recovery", noise_.factor(), last_world_}, description);
-  description.inertia = inertia_.linkUpTo(kept_.images->time_ns, view_.inertia);
+  description.inertia = motion_.inertia().linkUpTo(kept_.images->time_ns, view_.inertia);
 }
 
 void Tracker::keepStartingFrame(TrackedFrame& description) {
@@ -583,14 +522,9 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   last_.covariance = covariance;
   last_.inlier_count = 0;
   std::swap(view_, view);
-  motion_.forget();
-  inertia_.forget();
-  wheels_.forget();
   last_.is_by_wheels = false;
-  located_place_ = last_.wheels;
-  located_covariance_ = covariance;
-  located_ns_ = last_.images->time_ns;
-  if (view_.keyframes.contains(kept_number_)) inertia_.linkFrom(kept_number_, last_.images->time_ns);
+  motion_.goOnFrom(last_);
+  if (view_.keyframes.contains(kept_number_)) motion_.inertia().linkFrom(kept_number_, last_.images->time_ns);
   is_lost_ = false;
   lost_since_ns_ = -1;
   preparation_.forgetSharpness();
@@ -602,9 +536,9 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
 void Tracker::linkFromLatestKeyframe() {
   const ViewKeyframe& latest = view_.keyframes.back();
   if (latest.images) {
-    inertia_.linkFrom(latest.id, latest.images->time_ns);
+    motion_.inertia().linkFrom(latest.id, latest.images->time_ns);
   } else {
-    inertia_.forgetLink();
+    motion_.inertia().forgetLink();
   }
 }
 
@@ -623,15 +557,13 @@ void Tracker::adopt(MapView& view) {
     view.keyframes.push_back({keyframe.id, moved(*new_S_old, keyframe.world_T_camera), nullptr, Matrix7d::Zero(),
                               moved(*new_S_old, keyframe.twist)});
   }
-  if (view.corrections != view_.corrections || view.wheels.is_known != view_.wheels.is_known) wheels_.forget();
+  if (view.corrections != view_.corrections || view.wheels.is_known != view_.wheels.is_known) {
+    motion_.forgetWheels();
+  }
   std::swap(view_, view);
   centre_ = view_.centre;  // what was asked for meanwhile is asked for once more
   tracks_at_reuse_ = 0;
   motion_.scale(new_S_old->scale);
-  if (new_S_old->scale != 1) {
-    inertia_.forget();
-    wheels_.forget();
-  }
   const Pose moved_pose = moved(*new_S_old, last_.world_T_camera);
   if (is_first) {
     ++worlds_;

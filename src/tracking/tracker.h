@@ -19,36 +19,16 @@
 #include "tracking/frame_location.h"
 #include "tracking/frame_preparation.h"
 #include "tracking/frame_result.h"
-#include "tracking/inertial_motion.h"
 #include "tracking/keyframe_making.h"
 #include "tracking/map_reuse.h"
 #include "tracking/measured_noise.h"
-#include "tracking/motion_by_wheels.h"
-#include "tracking/motion_model.h"
 #include "tracking/spare_start.h"
 #include "tracking/stage_times.h"
 #include "tracking/tracked_frame.h"
+#include "tracking/unseen_motion.h"
 #include "tracking/world_uncertainty.h"
 
 namespace edgeslam {
-
-// Frames that show nothing of the map get their poses from inertia for as long as these are known so well.
-struct InertiaOnlyOptions {
-  double longest_s = 2;                      // since a frame was located
-  double largest_position_deviation = 0.1;   // standard deviation, share of the scene's distance
-  double largest_rotation_deviation = 0.05;  // [rad]
-};
-
-// Likewise by wheels, and frames in which none of the map is found.
-struct WheelsOnlyOptions {
-  double longest_s = 20;                     // since a frame was located
-  double largest_position_deviation = 0.3;   // standard deviation, share of the scene's distance
-  double largest_rotation_deviation = 0.12;  // [rad]
-  // A frame with so many of the edges that the last one had, share of them, shows that wheels which stood are wrong.
-  double contradicting_edges = 0.5;
-  // With fewer edges than so many of the last one's, share of them, a frame shows nothing to go on from.
-  double fewest_edges = 0.2;
-};
 
 struct TrackerOptions {
   BlurGateOptions blur_gate;
@@ -87,10 +67,10 @@ class Tracker {
   void startLost(const MapView& view, PointId first_free_point);
 
   // What the inertial unit measured, in order; before the frames that were taken until then.
-  void add(const InertialSample& sample) { inertia_.add(sample); }
+  void add(const InertialSample& sample) { motion_.add(sample); }
 
   // Where the wheels say that the robot was, likewise.
-  void add(const OdometryPose& pose) { wheels_.add(pose); }
+  void add(const OdometryPose& pose) { motion_.add(pose); }
 
   // `grey`: CV_8U of the camera's size. Frames come in the order of their time stamps. `mapping_busy`: it can be told
   // nothing now, so that this frame becomes no keyframe. `result` is written over. True where mapping is to be told
@@ -142,7 +122,6 @@ class Tracker {
   };
 
   bool mapStands() const { return view_.initialised; }
-  TimedCamera lastCamera() const { return {last_.images->time_ns, last_.world_T_camera}; }
 
   bool locate(Work& work);
   bool place(Work& work);
@@ -167,12 +146,9 @@ class Tracker {
   void tellMotion(const Pose& world_T_camera, FrameResult& result) const;
   Matrix6d withSharedNoise(const Matrix6d& covariance) const;
   void remember();
-  InertialPrediction predictedCamera(std::int64_t time_ns) const;
   void predict(std::int64_t time_ns, std::string_view reason, FrameResult& result) const;
-  std::optional<WheelPrediction> predictedByWheels(std::int64_t time_ns) const;
   std::optional<WheelPrediction> carriedByWheels(std::int64_t time_ns) const;
-  void goOnByWheels(FrameResult& result) const;
-  void goOnByInertia(const InertialPrediction& prediction, FrameResult& result) const;
+  void goOnBy(std::string_view by, FrameResult& result) const;
   void lose(Work& work);
   void linkFromLatestKeyframe();
   void beLostSince(std::int64_t time_ns);
@@ -184,19 +160,14 @@ class Tracker {
   FramePreparation preparation_;
   FrameLocation location_;
   KeyframeMaking keyframes_;
-  MotionModel motion_;
-  InertialMotion inertia_;
-  MotionByWheels wheels_;
+  UnseenMotion motion_;
   MeasuredNoise noise_;
   std::unique_ptr<std::byte[]> scratch_memory_;  // as much of it takes room as was ever used
   std::pmr::monotonic_buffer_resource scratch_;  // what one frame needs on the way
 
   MapView view_;
-  FollowedFrame frame_;                             // the current one
-  FollowedFrame last_;                              // the last frame that was located
-  OdometryPlace located_place_;                     // of the last frame that the camera located ...
-  Matrix6d located_covariance_ = Matrix6d::Zero();  // ... with this covariance ...
-  std::int64_t located_ns_ = 0;                     // ... then
+  FollowedFrame frame_;  // the current one
+  FollowedFrame last_;   // the last frame that was located
   LocationFigures figures_;
   std::string lost_reason_;
   FollowedFrame kept_;           // a lost frame that others look for

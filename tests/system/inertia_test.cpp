@@ -1,27 +1,16 @@
 // Inertial data beside the frames: metres, upright, and poses while a hand is on the lens.
 #include <gtest/gtest.h>
 
-#include "system/run_result.h"
+#include "system/measured_beside.h"
 
 namespace edgeslam {
 namespace {
 
 constexpr int covered_from = 200, covered_to = 214;
 
-class Inertia : public testing::Test {
+class Inertia : public MeasuredBesideTest {
  protected:
-  ReplayedRun replayedWith(const std::string& name, const std::vector<std::string>& more) const {
-    ReplayedRun run = replayed(input_, folder_.path(name), more);
-    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.messages;
-    return run;
-  }
-  AbsoluteError errorOf(const std::string& name) const {
-    return absoluteError(readTrajectory(folder_.path(name + "/trajectory.txt")),
-                         readTrajectory(input_ + "/groundtruth.txt"), Alignment::similarity);
-  }
-
-  const std::string input_ = std::string(EDGESLAM_RUN_FOLDER) + "/inertial";
-  const TemporaryFolder folder_;
+  Inertia() : MeasuredBesideTest("inertial") {}
 };
 
 TEST_F(Inertia, GivesMetresAndUpright) {

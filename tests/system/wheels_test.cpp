@@ -1,27 +1,16 @@
 // Wheels beneath the camera: metres, poses while a hand is on the lens, and wheels that spin.
 #include <gtest/gtest.h>
 
-#include "system/run_result.h"
+#include "system/measured_beside.h"
 
 namespace edgeslam {
 namespace {
 
 constexpr int covered_from = 140, covered_to = 169;  // a second; the wheels spin from 220 on
 
-class Wheels : public testing::Test {
+class Wheels : public MeasuredBesideTest {
  protected:
-  ReplayedRun replayedWith(const std::string& name, const std::vector<std::string>& more) const {
-    ReplayedRun run = replayed(input_, folder_.path(name), more);
-    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.messages;
-    return run;
-  }
-  AbsoluteError errorOf(const std::string& name) const {
-    return absoluteError(readTrajectory(folder_.path(name + "/trajectory.txt")),
-                         readTrajectory(input_ + "/groundtruth.txt"), Alignment::similarity);
-  }
-
-  const std::string input_ = std::string(EDGESLAM_RUN_FOLDER) + "/wheeled";
-  const TemporaryFolder folder_;
+  Wheels() : MeasuredBesideTest("wheeled") {}
 };
 
 TEST_F(Wheels, GiveMetresAlsoWhereTheySpin) {

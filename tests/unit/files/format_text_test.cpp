@@ -16,5 +16,11 @@ TEST(FormatText, IsWholeHoweverLong) {
   EXPECT_EQ(formatted("<%s>", long_text.c_str()), "<" + long_text + ">");
 }
 
+TEST(FormatText, WithoutDigitsLinesThatDifferInNumbersAreTheSame) {
+  EXPECT_EQ(withoutDigits("12.5 ms late, 3 times"), " ms late,  times");
+  EXPECT_EQ(withoutDigits("80 ms late, 17 times"), withoutDigits("5.25 ms late, 3 times"));
+  EXPECT_NE(withoutDigits("80 ms late"), withoutDigits("80 s late"));
+}
+
 }  // namespace
 }  // namespace edgeslam

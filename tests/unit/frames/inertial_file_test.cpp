@@ -93,9 +93,9 @@ TEST(InertialFile, IsFoundBesideTheFrames) {
   expectInputError([&] { readInertialRecording(openFrames(folder.path(""))->inertialFiles()); }, "imu.yaml");
   folder.write("imu.yaml", unit_text);
   EXPECT_EQ(readInertialRecording(openFrames(folder.path(""))->inertialFiles()).samples.size(), 3U);
-  EXPECT_EQ(readInertialRecording(openFrames(folder.path(""))->inertialFiles()).camera_readout_s, 0);
+  EXPECT_EQ(readInertialRecording(openFrames(folder.path(""))->inertialFiles()).unit.camera_readout_s, 0);
   folder.write("imu.yaml", unit_text + "readout_s: 0.024\n");
-  EXPECT_EQ(readInertialRecording(openFrames(folder.path(""))->inertialFiles()).camera_readout_s, 0.024);
+  EXPECT_EQ(readInertialRecording(openFrames(folder.path(""))->inertialFiles()).unit.camera_readout_s, 0.024);
 }
 
 TEST(InertialFile, EurocsIsRead) {

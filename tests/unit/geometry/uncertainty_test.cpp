@@ -44,5 +44,12 @@ TEST(Uncertainty, OfAScaleGrowsWithTheDistance) {
   EXPECT_NEAR((of_b.block<3, 3>(3, 3).norm()), 0, 1e-15);
 }
 
+TEST(Uncertainty, AWhiteningMakesItOne) {
+  Eigen::Matrix3d covariance;
+  covariance << 4, 1, -0.5, 1, 3, 0.2, -0.5, 0.2, 0.01 + 1;
+  const Eigen::Matrix3d whitening = whiteningOf(covariance);
+  EXPECT_LT((whitening * covariance * whitening.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace edgeslam

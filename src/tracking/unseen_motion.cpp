@@ -1,0 +1,101 @@
+#include "tracking/unseen_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace edgeslam {
+namespace {
+
+TimedCamera cameraOf(const FollowedFrame& frame) { return {frame.images->time_ns, frame.world_T_camera}; }
+
+double secondsSince(const FollowedFrame& frame, std::int64_t time_ns) {
+  return static_cast<double>(time_ns - frame.images->time_ns) * 1e-9;
+}
+
+bool isWithin(const Matrix6d& covariance, double largest_position_deviation, double largest_rotation_deviation) {
+  return std::sqrt(covariance.diagonal().head<3>().maxCoeff()) <= largest_position_deviation &&
+         std::sqrt(covariance.diagonal().tail<3>().maxCoeff()) <= largest_rotation_deviation;
+}
+
+}  // namespace
+
+void UnseenMotion::observe(const FollowedFrame& last, const FollowedFrame& now, double sigma, const MapView& view) {
+  motion_.observe(cameraOf(last), cameraOf(now));
+  inertia_.observe(cameraOf(now), sigma);
+  if (now.is_by_wheels) return;
+  wheels_.observe(cameraOf(now), now.covariance, view.wheels);
+  located_place_ = now.wheels;
+  located_covariance_ = now.covariance;
+  located_ns_ = now.images->time_ns;
+}
+
+void UnseenMotion::forget() {
+  motion_.forget();
+  inertia_.forget();
+  wheels_.forget();
+}
+
+void UnseenMotion::goOnFrom(const FollowedFrame& last) {
+  forget();
+  located_place_ = last.wheels;
+  located_covariance_ = last.covariance;
+  located_ns_ = last.images->time_ns;
+}
+
+void UnseenMotion::scale(double factor) {
+  motion_.scale(factor);
+  if (factor == 1) return;
+  inertia_.forget();
+  wheels_.forget();
+}
+
+InertialPrediction UnseenMotion::byCamera(const FollowedFrame& last, std::int64_t time_ns) const {
+  return {motion_.predict(cameraOf(last), time_ns),
+          MotionModel::predictedCovariance(last.covariance, secondsSince(last, time_ns)), false};
+}
+
+std::optional<WheelPrediction> UnseenMotion::byWheels(const FollowedFrame& last, std::int64_t time_ns,
+                                                      const MapView& view) const {
+  if (!has_wheels_ || last.wheels.piece < 0) return std::nullopt;
+  const InertialPrediction by_camera = byCamera(last, time_ns);
+  return wheels_.predict({cameraOf(last), last.wheels, located_place_, located_covariance_}, time_ns, view.wheels,
+                         {by_camera.world_T_camera, by_camera.covariance, false, false});
+}
+
+InertialPrediction UnseenMotion::predict(const FollowedFrame& last, std::int64_t time_ns, const MapView& view) const {
+  if (const std::optional<WheelPrediction> by_wheels = byWheels(last, time_ns, view)) {
+    return {by_wheels->world_T_camera, by_wheels->covariance, false};
+  }
+  const InertialPrediction by_camera = byCamera(last, time_ns);
+  return inertia_.predict(cameraOf(last), last.covariance, time_ns, view.inertia, by_camera).value_or(by_camera);
+}
+
+RowMotion UnseenMotion::whileRowsAreRead(const FollowedFrame& last, std::int64_t time_ns, bool map_stands) const {
+  return motion_.whileRowsAreRead(cameraOf(last), time_ns, map_stands);
+}
+
+bool UnseenMotion::isKnownByInertia(const InertialPrediction& prediction, const FollowedFrame& last,
+                                    std::int64_t time_ns) const {
+  return prediction.knows_position && secondsSince(last, time_ns) <= inertia_only_.longest_s &&
+         isWithin(prediction.covariance, inertia_only_.largest_position_deviation * last.scene_depth,
+                  inertia_only_.largest_rotation_deviation);
+}
+
+std::optional<WheelPrediction> UnseenMotion::carriedByWheels(const FollowedFrame& last, const FollowedFrame& frame,
+                                                             std::int64_t time_ns, const MapView& view) const {
+  std::optional<WheelPrediction> prediction = byWheels(last, time_ns, view);
+  if (!prediction || !prediction->knows_position ||
+      static_cast<double>(time_ns - located_ns_) * 1e-9 > wheels_only_.longest_s ||
+      !isWithin(prediction->covariance, wheels_only_.largest_position_deviation * last.scene_depth,
+                wheels_only_.largest_rotation_deviation)) {
+    return std::nullopt;
+  }
+  const bool is_of_frame = frame.isThere() && frame.images->time_ns == time_ns && frame.edges && last.edges;
+  const bool image_changed =
+      is_of_frame && static_cast<double>(frame.edges->points.size()) >=
+                         wheels_only_.contradicting_edges * static_cast<double>(last.edges->points.size());
+  if (prediction->stood && image_changed) return std::nullopt;
+  return prediction;
+}
+
+}  // namespace edgeslam
