@@ -244,7 +244,7 @@ InertialAlignmentEstimate estimateInertialAlignment(const InertialUnit& unit, co
   if (!so_far.is_known) solution = solveFreely(equations, force_prior);
   if (solution.is_determined) solution = solve(equations, solution, so_far, force_prior);
   if (!solution.is_determined || !(solution.scale > 0) || !(solution.scale_sigma < options.largest_scale_sigma)) {
-    estimate.lacking = "inertia: the scale is not known yet; the speed must change more";
+    estimate.lacking = speed_changes_too_little;
     if (solution.is_determined && solution.scale > 0) estimate.rough = with(solution, found);
     return estimate;
   }

@@ -10,6 +10,9 @@
 
 namespace edgeslam {
 
+// Why the scale is not known, where there are keyframes enough.
+constexpr const char* speed_changes_too_little = "inertia: the scale is not known yet; the speed must change more";
+
 struct InertialAlignmentOptions {
   double largest_scale_sigma = 0.05;  // the scale is known when its standard deviation is below this share of it
   int fewest_keyframes = 8;           // in a row, over ...

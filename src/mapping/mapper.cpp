@@ -192,7 +192,7 @@ void Mapper::alignWithMap(const InertialAlignment& start) {
   local.inertia_is_free = true;
   if (!adjustGlobally(camera_, options_.global_adjustment, local, aligned)) return;
   if (!(alignment.scale_sigma < options_.inertial_alignment.largest_scale_sigma)) {
-    if (!start.is_known) lacking_ = "inertia: the scale is not known yet; the speed must change more";
+    if (!start.is_known) lacking_ = speed_changes_too_little;
     return;
   }
   alignment.is_known = true;
