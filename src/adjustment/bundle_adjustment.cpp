@@ -116,7 +116,7 @@ void assess(const Camera& camera, const BundleProblem& problem, double huber, Bu
 }
 
 // Brings the scale camera back to its distance from camera 0 by scaling centres and lines about camera 0 and depths
-// with them, which changes no residual but the depth priors'. Where another camera, a point or a line is fixed, that
+// with them and their priors, which changes no residual. Where another camera, a point or a line is fixed, that
 // holds the scale already. False where the distance has collapsed.
 bool keepScale(const std::vector<BundleCamera>& before, BundleProblem& problem) {
   const auto distance = [&](const std::vector<BundleCamera>& cameras) {
@@ -135,6 +135,8 @@ bool keepScale(const std::vector<BundleCamera>& before, BundleProblem& problem) 
   if (problem.inertia.is_free) problem.inertia.metres_a_unit /= scale;
   for (BundlePoint& p : problem.points) {
     p.inverse_depth /= scale;
+    p.prior_inverse_depth /= scale;
+    p.prior_sigma /= scale;
     p.host_origin *= scale;
   }
   return true;

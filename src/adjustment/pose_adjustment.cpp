@@ -276,8 +276,8 @@ PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, 
     adjust([&](const Pose& pose) { return GlobalShutter(camera, pose); });
   } else {
     adjust([&](const Pose& pose) { return RollingShutter(camera, motion, pose); });
-    result.twist = twistOf(motion, result.world_T_camera);
   }
+  result.twist = twistOf(motion, result.world_T_camera);
   return result;
 }
 

@@ -42,11 +42,16 @@ ReadoutTrial tryReadout(const std::string& recording, const Camera& camera, cons
   return trial;
 }
 
+Settings withoutFinding(Settings settings) {
+  settings.mapping.camera_finding.is_enabled = false;
+  return settings;
+}
+
 // The trials of a search side by side, each in a thread.
 class Trials {
  public:
   Trials(const std::string& recording, const Camera& camera, const Settings& settings)
-      : recording_(recording), camera_(camera), settings_(settings) {}
+      : recording_(recording), camera_(camera), settings_(withoutFinding(settings)) {}
 
   std::vector<ReadoutTrial> of(const std::vector<double>& readouts_s) {
     std::vector<ReadoutTrial> trials(readouts_s.size());
@@ -80,7 +85,7 @@ class Trials {
 
   const std::string& recording_;
   const Camera& camera_;
-  const Settings& settings_;
+  Settings settings_;
   std::mutex mutex_;
 };
 

@@ -154,7 +154,8 @@ std::vector<ConfigurationKey> calibrationKeyNames() {
       {"k4", "0", ""},
       {"readout", "0.02",
        "of a rolling shutter: from the first row's reading to the last one's [s], negative where they are read from "
-       "below;\n0 for a global shutter. Also beside camera.calibration, in place of that of the file"},
+       "below;\n0 for a global shutter. Missing, here and in the calibration: found on the way. Also beside "
+       "camera.calibration, in place of that of the file"},
   }};
   std::vector<ConfigurationKey> names;
   for (const Shown& key : shown) {
@@ -185,6 +186,7 @@ void readCameraSection(const YAML::Node& section, Configuration& configuration, 
     configuration.camera = asConfigured(*configuration.camera, configuration);
   }
   if (readout || has_calibration) configuration.has_readout = configuration.readout_s.has_value();
+  configuration.settings.mapping.camera_finding.readout_is_known = configuration.has_readout;
   // Beside a calibration it is of that one, and not of another that takes its place.
   if (readout && has_calibration) configuration.readout_s.reset();
   if (pose) {
@@ -202,7 +204,9 @@ std::string formatCameraSection(const Configuration& configuration) {
     for (const CalibrationKey& known : calibrationKeys(camera)) {
       text += "  " + known.key.name() + ": " + valueText(known.key.field) + "\n";
     }
-    text += "  readout: " + numberText(camera.readout_s) + "\n";
+    if (camera.readout_s != 0 || configuration.has_readout) {
+      text += "  readout: " + numberText(camera.readout_s) + "\n";
+    }
   } else if (configuration.readout_s) {
     text += "  readout: " + numberText(*configuration.readout_s) + "\n";
   }

@@ -340,6 +340,12 @@ Keys methodKeys(Settings& settings) {
       {"lines.least_parallax_deg", &adjustment.lines.least_parallax_deg, "deg", 0.1, 90,
        "largest angle between the planes through a line and two keyframes"},
 
+      heading("camera_finding",
+              "What the calibration does not say, or says wrongly, the map tells: how long a rolling shutter reads its "
+              "rows, and a focal length that is off by 4 % or more"),
+      {"camera_finding.enabled", &settings.mapping.camera_finding.is_enabled, "", 0, 0,
+       "off where the calibration is to count as it is"},
+
       heading("map_reuse", "Map points that come into view again are found and followed on"),
       {"map_reuse.enabled", &reuse.enabled, "", 0, 0, "off only to measure what it gains"},
       {"map_reuse.interval", &reuse.interval, "frames", 1, 1000,

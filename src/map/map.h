@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "geometry/found_camera.h"
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
 #include "wheels/wheel_scale.h"
@@ -31,6 +32,7 @@ struct Map {
   LineId next_line = 0;                      // no number is given twice
   std::map<int, InertialAlignment> inertia;  // by world, where there is an inertial unit
   std::map<int, WheelScale> wheels;          // by world, where there are wheels
+  FoundCamera found;                         // what all rays here were taken with
 };
 
 // Position in the world frame.

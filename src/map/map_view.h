@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/found_camera.h"
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
 #include "wheels/wheel_scale.h"
@@ -44,6 +45,7 @@ struct MapView {
   std::string waiting_for;         // why not, in words that a user understands
   std::optional<InertialAlignment> inertia;  // of the world, where there is an inertial unit
   WheelScale wheels;                         // of the world
+  FoundCamera found;                         // of the camera, beside its calibration
   KeyframeTable<ViewKeyframe> keyframes;
   std::vector<ViewPoint> points;  // sorted by id
 };

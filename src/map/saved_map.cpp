@@ -39,9 +39,10 @@ std::string readWhole(const std::string& path) {
 }  // namespace
 
 void saveMap(const std::string& path, const Camera& camera, const Map& map) {
-  const std::string problem = mapProblem(camera, map);
+  const Camera found = withFound(camera, map.found);
+  const std::string problem = mapProblem(found, map);
   if (!problem.empty()) throw std::logic_error("the map would not be read back: " + problem);
-  writeFileAtomically(path, encodeMap({camera, map}));
+  writeFileAtomically(path, encodeMap({found, map}));
 }
 
 void requireMapCanBeSaved(const std::string& path) {
@@ -72,6 +73,12 @@ SavedMap readMap(const std::string& path) {
 Map loadMap(const std::string& path, const Camera& camera) {
   SavedMap saved = readMap(path);
   if (saved.camera == camera) return std::move(saved.map);
+  Camera found = camera;
+  found.readout_s = saved.camera.readout_s;
+  if (camera.readout_s == 0 && saved.camera == found) {
+    saved.map.found.readout_s = found.readout_s;
+    return std::move(saved.map);
+  }
   std::string problem = path + ": the map was made with another calibration than that of these frames";
   const double readout_s = std::exchange(saved.camera.readout_s, camera.readout_s);
   if (saved.camera == camera) {

@@ -86,4 +86,20 @@ std::vector<std::pair<std::int64_t, Pose>> posesOfInitialFrames(const Camera& ca
   return poses;
 }
 
+void tellMotion(const InitialFrames& frames, const std::vector<std::pair<std::int64_t, Pose>>& poses, Map& map) {
+  const auto secondsUntil = [&](std::int64_t frame_index) {
+    const auto frame = std::find_if(frames.since.begin(), frames.since.end(),
+                                    [&](const TrackedFrame& f) { return f.frame_index == frame_index; });
+    return frame == frames.since.end() ? 0.0 : 1e-9 * static_cast<double>(frame->time_ns - frames.first.time_ns);
+  };
+  for (Keyframe& keyframe : map.keyframes) {
+    const auto at =
+        std::find_if(poses.begin(), poses.end(), [&](const auto& pose) { return pose.first == keyframe.frame_index; });
+    if (at == poses.end()) continue;
+    const auto before = at == poses.begin() ? at : at - 1, after = at + 1 == poses.end() ? at : at + 1;
+    const double seconds = secondsUntil(after->first) - secondsUntil(before->first);
+    if (seconds > 0) keyframe.twist = twistBetween(before->second, after->second, seconds);
+  }
+}
+
 }  // namespace edgeslam

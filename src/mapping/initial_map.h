@@ -20,4 +20,7 @@ Map initialMap(const Camera& camera, const InitialFrames& frames, const InitialS
 std::vector<std::pair<std::int64_t, Pose>> posesOfInitialFrames(const Camera& camera, const InitialFrames& frames,
                                                                 const InitialStructure& structure);
 
+// Tells the map's keyframes how they moved as they were read, by the poses of the start's frames.
+void tellMotion(const InitialFrames& frames, const std::vector<std::pair<std::int64_t, Pose>>& poses, Map& map);
+
 }  // namespace edgeslam

@@ -102,7 +102,11 @@ void Initialisation::writeProvisional(MapView& view) const {
   }
 }
 
-Map Initialisation::map() const { return initialMap(camera_, frames_, accepted_, options_.largest_depth_sigma); }
+Map Initialisation::map() const {
+  Map begun = initialMap(camera_, frames_, accepted_, options_.largest_depth_sigma);
+  if (camera_.readout_s == 0) tellMotion(frames_, earlyPoses(), begun);
+  return begun;
+}
 
 std::optional<Pose> Initialisation::locate(const TrackedFrame& frame, const Pose& near) const {
   return locateAgainst(camera_, frames_.first, accepted_.inverse_depths, frame, near);

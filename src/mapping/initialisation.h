@@ -27,6 +27,9 @@ class Initialisation {
   void start(const TrackedFrame& first);
   // Starts from these frames, most of which were followed against another first one.
   void start(InitialFrames frames);
+  // For frames to come: it was found to be another one.
+  void setCamera(const Camera& camera) { camera_ = camera; }
+
   // A frame after the first one. True where the map now stands; then `map()` has it.
   bool add(const TrackedFrame& frame);
 

@@ -141,7 +141,8 @@ bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, 
 }
 
 bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options, const std::vector<KeyframeId>& free,
-                     const std::vector<KeyframeId>& fixed, Map& map, const std::atomic<bool>* interrupted) {
+                     const std::vector<KeyframeId>& fixed, Map& map, const std::atomic<bool>* interrupted,
+                     double* cost) {
   BundleProblem problem;
   std::vector<int> camera_of(numberOfKeyframes(map), -1);  // index in the problem, by keyframe
   std::vector<KeyframeId> keyframe_of;
@@ -200,6 +201,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
     if (!problem.ways.empty()) problem.scale_camera = -1;  // the wheels hold the scale
   }
   const BundleResult result = adjustBundle(camera, problem, options.bundle, interrupted);
+  if (cost) *cost = result.final_cost;
   if (!result.usable) return false;
   if (problem.inertia.is_free) {
     readInertia(problem.inertia, result.inertia_covariance, map.inertia[map.keyframes[ordered_free.front()].world]);

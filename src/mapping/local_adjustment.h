@@ -34,8 +34,9 @@ struct LocalAdjustmentOptions {
 bool adjustLocally(const Camera& camera, const LocalAdjustmentOptions& options, Map& map);
 
 // Adjusts the given keyframes and the points that they see; `fixed` ones only hold the gauge. False also where
-// `interrupted` became true.
+// `interrupted` became true. `cost`: what is left of the robust cost, where asked for.
 bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options, const std::vector<KeyframeId>& free,
-                     const std::vector<KeyframeId>& fixed, Map& map, const std::atomic<bool>* interrupted = nullptr);
+                     const std::vector<KeyframeId>& fixed, Map& map, const std::atomic<bool>* interrupted = nullptr,
+                     double* cost = nullptr);
 
 }  // namespace edgeslam

@@ -11,6 +11,7 @@ namespace edgeslam {
 
 void Mapper::goOnWith(Map map) {
   map_ = std::move(map);
+  takeCamera(withFound(calibrated_, map_.found));
   first_description_ = description_ = "a saved map";
   renewUncertainty(camera_, options_.uncertainty, map_);
   initialised_ = true;
@@ -146,6 +147,7 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   associateLines(camera_, options_.local_adjustment.lines, map_.keyframes.back().id, map_);
   placeLines(camera_, options_.local_adjustment.lines, map_);
   adjustLocally(camera_, options_.local_adjustment, map_);
+  findCamera();
   alignToEarth();
   scaleByWheels();
   const std::vector<CulledKeyframe> culled = cullKeyframes(options_.culling, map_, candidates_);
@@ -153,6 +155,18 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   addUncertainty(camera_, options_.uncertainty, map_);
   ++version_;
   return true;
+}
+
+void Mapper::findCamera() {
+  if (!camera_finding_.look(calibrated_, options_.global_adjustment, options_.local_adjustment, map_)) return;
+  takeCamera(withFound(calibrated_, map_.found));
+  renewUncertainty(camera_, options_.uncertainty, map_);
+  ++corrections_;
+}
+
+void Mapper::takeCamera(const Camera& camera) {
+  camera_ = camera;
+  initialisation_.setCamera(camera);
 }
 
 const InertialAlignment* Mapper::knownAlignment() const {
@@ -286,6 +300,7 @@ MapView Mapper::view(KeyframeId centre) const {
     view.waiting_for = initialisation_.waitingFor();
   }
   view.initialised = initialised_;
+  view.found = map_.found;
   view.version = version_;
   view.corrections = corrections_;
   view.origin_frame = origin_frame_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "map/map_change.h"
+#include "mapping/camera_finding.h"
 #include "mapping/culling.h"
 #include "mapping/global_adjustment.h"
 #include "mapping/inertial_alignment_estimate.h"
@@ -33,6 +34,7 @@ struct MapperOptions {
   MapUncertaintyOptions uncertainty;
   InertialAlignmentOptions inertial_alignment;  // with local_adjustment.inertia
   WheelScaleOptions wheel_scale;                // with local_adjustment.wheels
+  CameraFindingOptions camera_finding;
   int alignment_interval = 8;  // keyframes from one adjustment together with scale and gravity to another ...
   double well_known_scale_sigma = 0.005;  // ... until the scale's standard deviation is this share of it
 };
@@ -53,7 +55,11 @@ struct EarlyPose {
 class Mapper {
  public:
   Mapper(const Camera& camera, const MapperOptions& options)
-      : camera_(camera), options_(options), initialisation_(camera, options.initialisation) {}
+      : calibrated_(camera),
+        camera_(camera),
+        options_(options),
+        initialisation_(camera, options.initialisation),
+        camera_finding_(options.camera_finding) {}
 
   // Before the first frame: continues a map made earlier, of the same camera.
   void goOnWith(Map map);
@@ -98,6 +104,9 @@ class Mapper {
   std::string contradictionOfWheels() const;
   // Why it is not known how the world lies to the earth; empty where it is, or there is no inertial unit.
   const std::string& lackingForInertia() const { return lacking_; }
+  // The camera with what was found of it, and whether nothing more is looked for.
+  const Camera& camera() const { return camera_; }
+  bool cameraIsSettled() const { return camera_finding_.isSettled(); }
   // Poses of the frames before their maps stood, with the worlds as they are now.
   std::vector<EarlyPose> earlyPoses() const;
 
@@ -116,13 +125,17 @@ class Mapper {
   void stand();
   void makeRoomFor(KeyframeId keyframe);
   bool addKeyframe(const TrackedFrame& frame);
+  void findCamera();
+  void takeCamera(const Camera& camera);
   void alignToEarth();
   void scaleByWheels();
   void alignWithMap(const InertialAlignment& start);
 
-  Camera camera_;
+  Camera calibrated_;
+  Camera camera_;  // with what was found of it
   MapperOptions options_;
   Initialisation initialisation_;
+  CameraFinding camera_finding_;
   Map map_;
   Candidates candidates_;
   std::string first_description_, description_;

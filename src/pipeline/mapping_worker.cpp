@@ -28,6 +28,11 @@ MapperOptions MappingWorker::mapperOptions(const Settings& settings) {
 
 void MappingWorker::goOnWith(Map map) {
   mapper_.goOnWith(std::move(map));
+  updateRelocalisation();
+}
+
+void MappingWorker::updateRelocalisation() {
+  relocalisation_.setCamera(mapper_.camera());
   relocalisation_.update(mapper_.map());
 }
 
@@ -68,18 +73,38 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
         .events.push_back(formatted("the inertial unit tells metres and upright: a map unit is %.3f m +- %.1f %%",
                                     known->metres_a_unit, 100 * known->scale_sigma));
   }
+  tellOfCamera();
   if (mapper_.lackingForInertia() != lacking_for_inertia_) {
     report(last_frame_).lacking_for_inertia = lacking_for_inertia_ = mapper_.lackingForInertia();
   }
   if (mapper_.initialised()) {
     new_keyframe_ = true;
-    relocalisation_.update(mapper_.map());
+    updateRelocalisation();
     std::vector<CulledKeyframe> culled = mapper_.takeCulled();
     if (!culled.empty()) report(last_frame_).culled = std::move(culled);
   }
   MapUpdate update = nextUpdate();
   if (new_keyframe_) packImages(mapper_.map(), update.view);
   return update;
+}
+
+// Once it has come to stay.
+void MappingWorker::tellOfCamera() {
+  if (camera_is_told_ || !mapper_.cameraIsSettled()) return;
+  camera_is_told_ = true;
+  const FoundCamera& found = mapper_.map().found;
+  if (found.readout_s) {
+    report(last_frame_)
+        .events.push_back(formatted("the camera has a rolling shutter and reads its rows over %.1f ms: with "
+                                    "camera.readout: %.4f in the configuration this is known from the start",
+                                    1e3 * *found.readout_s, *found.readout_s));
+  }
+  if (found.focal_scale != 1) {
+    report(last_frame_)
+        .events.push_back(formatted("the focal length is not that of the calibration, but %.1f pixels: calibrate the "
+                                    "camera",
+                                    mapper_.camera().fx));
+  }
 }
 
 // The frame's pose is lost: recovery by its tracks (P21), then the map as a whole (P22).
@@ -95,7 +120,7 @@ bool MappingWorker::recover(const MappingMessage& message) {
   not_found_ = recovery.reason;
   if (!recovery.found) return false;
   new_keyframe_ = true;
-  relocalisation_.update(mapper_.map());
+  updateRelocalisation();
   const Keyframe& keyframe = mapper_.map().keyframes.back();
   goOnFrom(TrackingState::recovered, keyframe.id, keyframe.world_T_camera, recovery.covariance, {},
            "recovered from three keyframes, " + std::to_string(recovery.inliers) + " points");
@@ -136,6 +161,7 @@ void MappingWorker::goOnFrom(TrackingState how, KeyframeId reference, const Pose
 
 std::optional<MapUpdate> MappingWorker::apply(const Correction& correction) {
   if (correction.number < first_valid_message_) return std::nullopt;
+  if (correction.found != mapper_.map().found) return std::nullopt;  // its rays are no longer those of the map
   if (!correction.events.empty() || correction.loop) {
     MappingReport& done = report(last_frame_);
     done.events = correction.events;

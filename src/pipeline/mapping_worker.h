@@ -42,6 +42,8 @@ class MappingWorker {
 
  private:
   static MapperOptions mapperOptions(const Settings& settings);
+  void updateRelocalisation();
+  void tellOfCamera();
   void find(const MappingMessage& message);
   bool recover(const MappingMessage& message);
   void relocalise(const MappingMessage& message);
@@ -65,6 +67,7 @@ class MappingWorker {
   std::string not_found_;
   std::int64_t next_update_ = 0;
   std::string lacking_for_inertia_;  // that was reported
+  bool camera_is_told_ = false;      // what was found of it
   std::vector<MappingReport> reports_;
 };
 

@@ -79,6 +79,7 @@ struct Correction {
   MapChange change;                 // empty: nothing is to be done
   std::vector<std::string> events;  // loops closed and refused, with their reasons
   std::optional<ClosedLoop> loop;
+  FoundCamera found;  // that all of it was made with
 };
 
 // What mapping and places did, for those who look at the run.

@@ -29,6 +29,9 @@ Correction PlacesWorker::correctionOf(const Snapshot& snapshot) {
   Correction correction;
   correction.number = snapshot.number;
   const Map& before = *snapshot.map;
+  camera_ = withFound(calibrated_, before.found);
+  loop_closing_.setCamera(camera_);
+  correction.found = before.found;
   if (before.keyframes.front().frame_index != origin_frame_) {
     origin_frame_ = before.keyframes.front().frame_index;
     // Where a saved map is continued, the camera is in its old parts from the start.

@@ -14,7 +14,8 @@ namespace edgeslam {
 class PlacesWorker {
  public:
   PlacesWorker(const Camera& camera, const Settings& settings)
-      : camera_(camera),
+      : calibrated_(camera),
+        camera_(camera),
         settings_(settings),
         loop_closing_(camera, {settings.edges, settings.points.accuracy}, settings.loops) {}
 
@@ -32,7 +33,8 @@ class PlacesWorker {
   Meeting meetOldPart(const Map& map);
   bool globalAdjustmentDue(const Map& map) const;
 
-  Camera camera_;
+  Camera calibrated_;
+  Camera camera_;  // with what was found of it
   Settings settings_;
   LoopClosing loop_closing_;
   std::atomic<bool> interrupted_{false};

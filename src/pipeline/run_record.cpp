@@ -111,6 +111,8 @@ RunResult RunRecord::finish(const Mapper& mapper) {
     const std::size_t place = placeOf(keyframe.frame_index);
     if (place < result_.frames.size()) result_.frames[place].is_keyframe = true;
   }
+  result_.camera = mapper.camera();
+  result_.found = map.found;
   result_.keyframes = keyframeRecords(map, first_keyframe_);
   result_.map_points = mapPointRecords(map, result_.camera);
   result_.map_lines = mapLineRecords(map);

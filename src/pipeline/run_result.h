@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/camera.h"
+#include "geometry/found_camera.h"
 #include "geometry/pose.h"
 #include "inertia/inertial_alignment.h"
 #include "pipeline/duration_statistics.h"
@@ -78,7 +78,8 @@ struct ClosedLoop {
 };
 
 struct RunResult {
-  Camera camera;
+  Camera camera;                   // with what was found of it
+  FoundCamera found;               // beside its calibration
   std::deque<FrameRecord> frames;  // grows without moving what is there
   // Of all worlds: maps that could not be joined, each with a coordinate frame and a unit of its own.
   std::vector<KeyframeRecord> keyframes;

@@ -63,6 +63,9 @@ class LoopClosing {
   LoopClosing(const Camera& camera, const ImageReading& reading, const LoopClosingOptions& options)
       : camera_(camera), reading_(reading), options_(options) {}
 
+  // It was found to be another one.
+  void setCamera(const Camera& camera) { camera_ = camera; }
+
   // The map's latest keyframe, once for each, after the local adjustment. A map that was begun anew is told by the
   // frames of its keyframes. Verifies at most options.detection.most_candidates.
   LoopOutcome addKeyframe(const Map& map);

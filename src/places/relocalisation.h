@@ -66,6 +66,9 @@ class Relocalisation {
   Relocalisation(const Camera& camera, const PointAccuracyOptions& accuracy, const RelocalisationOptions& options)
       : camera_(camera), accuracy_(accuracy), options_(options) {}
 
+  // It was found to be another one.
+  void setCamera(const Camera& camera) { camera_ = camera; }
+
   // A keyframe without images is passed over; one already known is taken anew.
   void addKeyframe(const Keyframe& keyframe);
   // The same for each keyframe of the map that is not known yet; those no longer in the map are forgotten.

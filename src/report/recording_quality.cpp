@@ -30,7 +30,9 @@ std::optional<Problem> measurementErrors(const RunResult& result) {
   if (!(factor > limit)) return std::nullopt;
   return Problem{severityOf(factor, limit, most_that_is_measured),
                  formatted("measurements err %.1f times as far as a good camera's: ", factor) +
-                     "check the calibration, or the camera has a rolling shutter (docs/calibrating.md)"};
+                     (result.camera.readout_s == 0
+                          ? "check the calibration, or the camera has a rolling shutter (docs/calibrating.md)"
+                          : "check the calibration (docs/calibrating.md)")};
 }
 
 std::optional<Problem> blurredFrames(const RunResult& result) {

@@ -40,6 +40,12 @@ void describe(const LocationFigures& figures, std::string& reason) {
   }
 }
 
+void FrameLocation::setCamera(const Camera& camera) {
+  const bool has_other_rays = camera.fx != camera_.fx || camera.fy != camera_.fy;
+  camera_ = camera;
+  if (has_other_rays) rotation_grids_ = makeRotationGrids(camera);
+}
+
 FrameLocation::FrameLocation(const Camera& camera, const LocationOptions& options)
     : camera_(camera), options_(options), rotation_grids_(makeRotationGrids(camera)) {
   if (!camera.mask) return;

@@ -61,6 +61,9 @@ class FrameLocation {
  public:
   FrameLocation(const Camera& camera, const LocationOptions& options);
 
+  // For frames to come: it was found to be another one.
+  void setCamera(const Camera& camera);
+
   // Fills the tracks, the pose and what agrees with it of `frame`, whose images and edges are there; `last` was located
   // in `view`. False where no pose is found that can be believed: `figures` say why. `memory`: what it needs on the
   // way.

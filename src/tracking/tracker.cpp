@@ -76,7 +76,8 @@ std::optional<Similarity> newWorldSOldWorld(const MapView& old_view, const MapVi
 
 Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoiceOptions& points,
                  const TrackerOptions& options)
-    : camera_(camera),
+    : calibrated_(camera),
+      camera_(camera),
       options_(options),
       most_tracks_(static_cast<std::size_t>(points.count)),
       preparation_(camera, {edges, points.accuracy, options.blur_gate, pyramidLevels(options)}),
@@ -97,6 +98,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
 
 void Tracker::startLost(const MapView& view, PointId first_free_point) {
   view_ = view;
+  takeCamera(view.found);
   worlds_ = 1;
   last_world_ = view.world;
   keyframes_.goOnFrom(view.latest_keyframe + 1, first_free_point);
@@ -522,6 +524,7 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   last_.covariance = covariance;
   last_.inlier_count = 0;
   std::swap(view_, view);
+  takeCamera(view_.found);
   last_.is_by_wheels = false;
   motion_.goOnFrom(last_);
   if (view_.keyframes.contains(kept_number_)) motion_.inertia().linkFrom(kept_number_, last_.images->time_ns);
@@ -531,6 +534,15 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   keyframes_.seen(view_.latest_keyframe);
   keyframes_.forgetAverage();
   keyframes_.askForOne(last_);
+}
+
+// Mapping found the camera to be another one than its calibration says.
+void Tracker::takeCamera(const FoundCamera& found) {
+  const Camera camera = withFound(calibrated_, found);
+  if (camera == camera_) return;
+  camera_ = camera;
+  location_.setCamera(camera);
+  keyframes_.setCamera(camera);
 }
 
 void Tracker::linkFromLatestKeyframe() {
@@ -561,6 +573,7 @@ void Tracker::adopt(MapView& view) {
     motion_.forgetWheels();
   }
   std::swap(view_, view);
+  takeCamera(view_.found);
   centre_ = view_.centre;  // what was asked for meanwhile is asked for once more
   tracks_at_reuse_ = 0;
   motion_.scale(new_S_old->scale);

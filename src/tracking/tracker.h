@@ -150,11 +150,13 @@ class Tracker {
   std::optional<WheelPrediction> carriedByWheels(std::int64_t time_ns) const;
   void goOnBy(std::string_view by, FrameResult& result) const;
   void lose(Work& work);
+  void takeCamera(const FoundCamera& found);
   void linkFromLatestKeyframe();
   void beLostSince(std::int64_t time_ns);
   bool isLostBriefly(std::int64_t time_ns) const;
 
-  Camera camera_;
+  Camera calibrated_;
+  Camera camera_;  // with what was found of it
   TrackerOptions options_;
   std::size_t most_tracks_;
   FramePreparation preparation_;

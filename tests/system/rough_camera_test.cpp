@@ -22,21 +22,27 @@ void expectPosesGoOn(const ReplayedRun& result, const std::string& sequence, dou
   EXPECT_LT(largestError(readTrajectory(result.folder + "/trajectory.txt"), truth), largest_error_m);
 }
 
+// A sequence whose calibration has focal lengths that are so many times as long as they are.
+std::string withWrongFocalLengths(double times, const TemporaryFolder& folder, const std::string& name) {
+  const std::string sequence = EditedSequence().add(place("parlour"), 0, 239).write(folder, name);
+  std::string camera = fileContent(sequence + "/camera.yaml"), wrong;
+  const std::regex focal("(f[xy]: *)([0-9.]+)");
+  std::smatch match;
+  int found = 0;
+  for (; std::regex_search(camera, match, focal); camera = match.suffix(), ++found) {
+    wrong += match.prefix().str() + match[1].str() + std::to_string(times * std::stod(match[2].str()));
+  }
+  EXPECT_EQ(found, 2) << "fx and fy";
+  folder.write(name + "/camera.yaml", wrong + camera);
+  return sequence;
+}
+
 TEST(RoughCamera, ACalibrationThatIsTwoPercentOff) {
   const TemporaryFolder folder;
-  for (const double factor : {0.98, 1.02}) {
-    const std::string name = factor < 1 ? "short" : "long";
-    const std::string sequence = EditedSequence().add(place("parlour"), 0, 239).write(folder, name);
-    std::string camera = fileContent(sequence + "/camera.yaml"), wrong;
-    const std::regex focal("(f[xy]: *)([0-9.]+)");
-    std::smatch match;
-    int found = 0;
-    for (; std::regex_search(camera, match, focal); camera = match.suffix(), ++found) {
-      wrong += match.prefix().str() + match[1].str() + std::to_string(factor * std::stod(match[2].str()));
-    }
-    ASSERT_EQ(found, 2) << "fx and fy";
-    folder.write(name + "/camera.yaml", wrong + camera);
-    expectPosesGoOn(replayed(sequence, folder.path(name + "_result")), sequence, 0.15);
+  for (const double times : {0.98, 1.02}) {
+    const std::string name = times < 1 ? "short" : "long";
+    expectPosesGoOn(replayed(withWrongFocalLengths(times, folder, name), folder.path(name + "_result")),
+                    place("parlour"), 0.15);
   }
 }
 
@@ -62,6 +68,45 @@ TEST(RoughCamera, RowsThatAreReadOneAfterAnother) {
   const ReplayedRun without = replayed(sequence, folder.path("without"), {"--config", folder.path("global.yaml")});
   ASSERT_EQ(without.outcome.exit_code, 0) << without.outcome.messages;
   EXPECT_LT(meanError(with, sequence), 0.5 * meanError(without, sequence));
+}
+
+TEST(RoughCamera, ARollingShutterIsFoundOnTheWay) {
+  const TemporaryFolder folder;
+  const std::string place_rolling = place("parlour_rolling");
+  const std::string sequence = EditedSequence().add(place_rolling, 0, 239).write(folder, "sequence");
+  std::string calibration = fileContent(sequence + "/camera.yaml");
+  const std::size_t readout = calibration.find("readout:");
+  ASSERT_NE(readout, std::string::npos);
+  calibration.erase(readout, calibration.find('\n', readout) - readout + 1);
+  folder.write("sequence/camera.yaml", calibration);
+  folder.write("global.yaml", "camera: {readout: 0}\n");
+
+  const ReplayedRun finds = replayed(sequence, folder.path("finds"));
+  expectPosesGoOn(finds, sequence, 0.12);
+  const ReplayedRun global = replayed(sequence, folder.path("global"), {"--config", folder.path("global.yaml")});
+  ASSERT_EQ(global.outcome.exit_code, 0) << global.outcome.messages;
+  EXPECT_LT(meanError(finds, sequence), 0.7 * meanError(global, sequence));
+  const std::regex line("rolling shutter and reads its rows over ([-0-9.]+) ms");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(finds.outcome.output, match, line)) << finds.outcome.output;
+  EXPECT_NEAR(std::stod(match[1]), 24, 4);
+  EXPECT_EQ(global.outcome.output.find("rolling shutter and reads"), std::string::npos);
+
+  const ReplayedRun again = replayed(sequence, folder.path("again"));
+  EXPECT_EQ(fileContent(again.folder + "/trajectory.txt"), fileContent(finds.folder + "/trajectory.txt"));
+}
+
+TEST(RoughCamera, AFocalLengthThatIsFarOffIsFoundOnTheWay) {
+  const TemporaryFolder folder;
+  const std::string sequence = withWrongFocalLengths(1.08, folder, "long");
+  folder.write("as_it_is.yaml", "camera_finding: {enabled: false}\n");
+  const ReplayedRun finds = replayed(sequence, folder.path("finds"));
+  const ReplayedRun as_it_is = replayed(sequence, folder.path("as_it_is"), {"--config", folder.path("as_it_is.yaml")});
+  ASSERT_EQ(finds.outcome.exit_code, 0) << finds.outcome.messages;
+  ASSERT_EQ(as_it_is.outcome.exit_code, 0) << as_it_is.outcome.messages;
+  EXPECT_LT(meanError(finds, sequence), 0.7 * meanError(as_it_is, sequence));
+  EXPECT_NE(finds.outcome.output.find("the focal length is not that of the calibration"), std::string::npos)
+      << finds.outcome.output;
 }
 
 TEST(RoughCamera, TheReadoutIsFoundByWhatFitsBest) {

@@ -1,0 +1,28 @@
+// What a run finds of its camera that the calibration does not say, or says wrongly.
+#pragma once
+
+#include <optional>
+
+#include "geometry/camera.h"
+
+namespace edgeslam {
+
+struct FoundCamera {
+  std::optional<double> readout_s;  // as Camera::readout_s; none: the calibration's counts
+  double focal_scale = 1;           // focal lengths, over those of the calibration
+};
+
+inline bool operator==(const FoundCamera& a, const FoundCamera& b) {
+  return a.readout_s == b.readout_s && a.focal_scale == b.focal_scale;
+}
+inline bool operator!=(const FoundCamera& a, const FoundCamera& b) { return !(a == b); }
+
+// A calibrated camera, as it was found to be.
+inline Camera withFound(Camera camera, const FoundCamera& found) {
+  camera.readout_s = found.readout_s.value_or(camera.readout_s);
+  camera.fx *= found.focal_scale;
+  camera.fy *= found.focal_scale;
+  return camera;
+}
+
+}  // namespace edgeslam

@@ -1,0 +1,82 @@
+// What the map says of the camera that its calibration does not, or says wrongly: how long a rolling shutter reads its
+// rows, and how long the focal length is. With another one than the camera's the rays of the keyframes do not meet as
+// well, so that their adjustment costs more.
+//
+// How the camera moved while a keyframe was read is told by the poses of frames, which err as long as the readout is
+// not known. So what is found is too small at first. The frames to come are better, and what is found from them is
+// nearer: it is looked for again every few keyframes, until it stays.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/found_camera.h"
+#include "mapping/global_adjustment.h"
+
+namespace edgeslam {
+
+struct CameraFindingOptions {
+  bool is_enabled = true;
+  bool readout_is_known = false;  // that of the calibration counts, also where it is 0
+  int fewest_keyframes = 12;      // of a world
+  int interval = 4;               // keyframes from one look to the next
+  int most_keyframes = 24;        // the latest so many are looked at
+  int most_looks = 30;
+  int whole_map = 60;  // keyframes of a world that are all adjusted by what was found; of more the latest are
+};
+
+// What some keyframes say of their camera: with what their adjustment costs least.
+struct CameraEstimate {
+  double value = 0;  // readout [s], or the logarithm of how many times as long the focal lengths are
+  double sigma = 0;  // standard deviation, if measurements err as they say
+};
+
+// Of one thing that is looked for: what the looks at it said, one after the other.
+struct CameraLooks {
+  int agreeing = 0;  // in a row, that say that it is not as presumed ...
+  double last = 0;   // ... and what the last of these said
+  int steady = 0;    // in a row, that change nothing
+  bool was_found = false;
+  bool is_settled = false;
+};
+
+class CameraFinding {
+ public:
+  explicit CameraFinding(const CameraFindingOptions& options) : options_(options) {
+    readout_.is_settled = options.readout_is_known;
+  }
+
+  // After a keyframe was added to the latest keyframe's world. True where the camera was found to be another one:
+  // `map.found` says so, and the map is adjusted to it. `calibrated`: without what was found.
+  bool look(const Camera& calibrated, const GlobalAdjustmentOptions& global, const LocalAdjustmentOptions& local,
+            Map& map);
+
+  // Nothing is looked for any more.
+  bool isSettled() const { return !options_.is_enabled || (readout_.is_settled && focal_length_.is_settled); }
+
+ private:
+  CameraFindingOptions options_;
+  CameraLooks readout_, focal_length_;
+  int since_look_ = 0;  // keyframes
+  int looks_ = 0;
+};
+
+// Some keyframes of a map, as they are looked at: adjusted by themselves, with all that they see.
+struct LookedAt {
+  Camera camera;  // that the map's rays are of
+  LocalAdjustmentOptions adjustment;
+  std::vector<KeyframeId> keyframes;
+  Map map;
+  double cost = 0;
+};
+
+// Nothing where the adjustment failed.
+std::optional<LookedAt> lookAt(const Camera& camera, const GlobalAdjustmentOptions& global,
+                               const LocalAdjustmentOptions& local, const std::vector<KeyframeId>& keyframes,
+                               const Map& map);
+
+// Readouts up to `longest_s` of either sign are tried. Nothing where there is no least cost.
+std::optional<CameraEstimate> estimateReadout(const LookedAt& at, double longest_s);
+std::optional<CameraEstimate> estimateFocalLength(const LookedAt& at);
+
+}  // namespace edgeslam
