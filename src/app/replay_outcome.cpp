@@ -38,6 +38,17 @@ void tellPoses(const RunResult& result, const RunSummary& summary) {
   for (const std::string& event : result.events) std::printf("%s\n", event.c_str());
 }
 
+void tellCamera(const RunResult& result) {
+  if (result.found.readout_s) {
+    std::printf("found on the way: the camera reads its rows over %.1f ms (camera.readout: %.4f)\n",
+                1e3 * *result.found.readout_s, *result.found.readout_s);
+  }
+  if (result.found.focal_scale != 1) {
+    std::printf("found on the way: the focal length is not that of the calibration, but %.1f pixels\n",
+                result.camera.fx);
+  }
+}
+
 void tellInertia(const RunResult& result) {
   const auto known = result.inertia.find(result.main_world);
   if (known != result.inertia.end()) {
@@ -73,6 +84,7 @@ void tellOutcome(const RunResult& result, const std::optional<Trajectory>& groun
   tellFrames(result);
   const RunSummary summary = summarise(result, std::nullopt);
   tellPoses(result, summary);
+  tellCamera(result);
   if (summary.final_poses > 0) {
     tellInertia(result);
     tellWheels(result);

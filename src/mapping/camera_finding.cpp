@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "map/worlds.h"
 #include "mapping/rays_anew.h"
@@ -33,7 +34,6 @@ constexpr Looking looking_for_readout{0.006, 0.0005, 0, 3, 2, longest_tried_s, 0
 // A map that is bent takes up to 2 % even where the calibration is exact (forward motion, bare walls).
 constexpr Looking looking_for_focal_length{0.02, 0.005, 0.04, 3, 3, 0.02, 0.01, 0.003, 0.01};
 constexpr double beyond_doubt = 8;  // standard deviations; only without a least change
-constexpr int steady_looks_found = 3, steady_looks_not_found = 6;
 
 std::vector<KeyframeId> latestOf(std::vector<KeyframeId> keyframes, int most) {
   if (static_cast<int>(keyframes.size()) > most) keyframes.erase(keyframes.begin(), keyframes.end() - most);
@@ -99,11 +99,13 @@ std::optional<CameraEstimate> leastCost(const LookedAt& at, const std::function<
 }
 
 // True where the value that there is now is to change, after one more look.
-bool isToChange(const Looking& looking, const CameraEstimate& estimate, double now, CameraLooks& looks) {
+// `keyframes`: since the look before. It is settled when it stays for `enough` keyframes.
+bool isToChange(const Looking& looking, const CameraEstimate& estimate, double now, int keyframes, int enough,
+                CameraLooks& looks) {
   const double change = estimate.value - now;
   if (looks.was_found) {
-    looks.steady = std::abs(change) < looking.little ? looks.steady + 1 : 0;
-    looks.is_settled = looks.steady >= steady_looks_found;
+    looks.steady = std::abs(change) < looking.little ? looks.steady + keyframes : 0;
+    looks.is_settled = looks.steady >= enough;
     return std::abs(change) > looking.too_little;
   }
   const double sigma = std::hypot(honest_times * estimate.sigma, looking.least_sigma);
@@ -112,8 +114,8 @@ bool isToChange(const Looking& looking, const CameraEstimate& estimate, double n
       looks.agreeing > 0 && change * looks.last > 0 && std::abs(change - looks.last) < looking.agreement;
   looks.agreeing = !says_so ? 0 : agrees ? looks.agreeing + 1 : 1;
   looks.last = change;
-  looks.steady = !says_so && sigma < looking.well_known ? looks.steady + 1 : 0;
-  looks.is_settled = looks.steady >= steady_looks_not_found;
+  looks.steady = !says_so && sigma < looking.well_known ? looks.steady + keyframes : 0;
+  looks.is_settled = looks.steady >= enough;
   const bool is_beyond_doubt = looking.least == 0 && std::abs(change) > beyond_doubt * sigma;
   looks.was_found = is_beyond_doubt || looks.agreeing >= looking.agreeing_looks;
   return looks.was_found;
@@ -149,10 +151,11 @@ std::optional<CameraEstimate> estimateFocalLength(const LookedAt& at) {
 bool CameraFinding::look(const Camera& calibrated, const GlobalAdjustmentOptions& global,
                          const LocalAdjustmentOptions& local, Map& map) {
   if (calibrated.readout_s != 0) readout_.is_settled = true;
-  if (isSettled() || ++since_look_ < options_.interval) return false;
+  const bool was_found = readout_.was_found || focal_length_.was_found;
+  if (isSettled() || ++since_look_ < (was_found ? options_.interval_found : options_.interval)) return false;
   const std::vector<KeyframeId> all = keyframesOf(map, map.keyframes.back().world);
   if (static_cast<int>(all.size()) < options_.fewest_keyframes) return false;
-  since_look_ = 0;
+  const int keyframes = std::exchange(since_look_, 0);
   const Camera camera = withFound(calibrated, map.found);
   const std::vector<KeyframeId> latest = latestOf(all, options_.most_keyframes);
   const std::optional<LookedAt> at = lookAt(camera, global, local, latest, map);
@@ -161,13 +164,15 @@ bool CameraFinding::look(const Camera& calibrated, const GlobalAdjustmentOptions
   if (!readout_.is_settled) {
     const double longest_s = longestReadout(map, latest);
     const auto estimate = estimateReadout(*at, longest_s);
-    if (estimate && isToChange(looking_for_readout, *estimate, camera.readout_s, readout_)) {
+    if (estimate &&
+        isToChange(looking_for_readout, *estimate, camera.readout_s, keyframes, options_.most_keyframes, readout_)) {
       found.readout_s = std::clamp(estimate->value, -longest_s, longest_s);
     }
   }
   if (!focal_length_.is_settled) {
     const auto estimate = estimateFocalLength(*at);
-    if (estimate && isToChange(looking_for_focal_length, *estimate, 0, focal_length_)) {
+    if (estimate &&
+        isToChange(looking_for_focal_length, *estimate, 0, keyframes, options_.most_keyframes, focal_length_)) {
       const double logarithm = std::log(map.found.focal_scale) + estimate->value;
       found.focal_scale = std::exp(std::clamp(logarithm, -most_focal_change, most_focal_change));
     }

@@ -19,9 +19,10 @@ struct CameraFindingOptions {
   bool is_enabled = true;
   bool readout_is_known = false;  // that of the calibration counts, also where it is 0
   int fewest_keyframes = 12;      // of a world
-  int interval = 4;               // keyframes from one look to the next
+  int interval = 2;               // keyframes from one look to the next, until something is found ...
+  int interval_found = 4;         // ... and then
   int most_keyframes = 24;        // the latest so many are looked at
-  int most_looks = 30;
+  int most_looks = 50;
   int whole_map = 60;  // keyframes of a world that are all adjusted by what was found; of more the latest are
 };
 
@@ -35,7 +36,7 @@ struct CameraEstimate {
 struct CameraLooks {
   int agreeing = 0;  // in a row, that say that it is not as presumed ...
   double last = 0;   // ... and what the last of these said
-  int steady = 0;    // in a row, that change nothing
+  int steady = 0;    // keyframes over which they changed nothing
   bool was_found = false;
   bool is_settled = false;
 };
