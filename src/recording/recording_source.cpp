@@ -220,8 +220,8 @@ std::optional<Frame> RecordingSource::next() {
   frame.problem = recorded.problem;
   if (!frame.problem.empty()) return frame;
   const std::string path = framePath(recording_, recorded.time_ns);
-  DecodedImage image = readGreyImage(path, {{recording_.camera.width, recording_.camera.height},
-                                            recording_.folder + "/" + tum_camera_name + " says"});
+  DecodedImage image = readGreyImage(
+      path, {{recording_.camera.width, recording_.camera.height}, recording_.folder + "/" + tum_camera_name + " says"});
   frame.problem = image.problem;
   frame.grey = std::move(image.grey);
   return frame;
