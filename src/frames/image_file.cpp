@@ -34,7 +34,8 @@ std::string problemOfHeader(std::string_view bytes, const ExpectedSize& expected
   if (format == ImageFormat::jpeg && !jpegIsWhole(bytes)) return "is cut off";
   if (!claimed) return "is no image that can be decoded, or is damaged";
   const cv::Size size(static_cast<int>(claimed->width), static_cast<int>(claimed->height));
-  if (const std::string wrong = sizeProblem(size, expected.size, expected.by); !wrong.empty()) return wrong;
+  std::string wrong = sizeProblem(size, expected.size, expected.by);
+  if (!wrong.empty()) return wrong;
   if (!canHoldItsSize(bytes)) {
     return "is cut off or damaged: " + sizeText(size) + " pixels are not in " + std::to_string(bytes.size()) + " bytes";
   }

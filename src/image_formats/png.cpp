@@ -43,6 +43,8 @@ class Reader {
     }
   }
   ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  Reader(Reader&&) = delete;
+  Reader& operator=(Reader&&) = delete;
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
@@ -98,6 +100,8 @@ class Writer {
     }
   }
   ~Writer() { png_destroy_write_struct(&png_, &info_); }
+  Writer(Writer&&) = delete;
+  Writer& operator=(Writer&&) = delete;
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
@@ -180,8 +184,8 @@ std::vector<unsigned char> encodePng(const cv::Mat& image, PngEffort effort) {
   CV_Assert(!image.empty() && (image.type() == CV_8UC1 || image.type() == CV_8UC3));
   const Writer writer;
   std::vector<unsigned char> output;
-  std::vector<png_bytep> rows;
-  for (int y = 0; y < image.rows; ++y) rows.push_back(const_cast<png_bytep>(image.ptr(y)));
+  std::vector<png_bytep> rows(static_cast<std::size_t>(image.rows));
+  for (int y = 0; y < image.rows; ++y) rows[static_cast<std::size_t>(y)] = const_cast<png_bytep>(image.ptr(y));
   if (!writeAll(writer.png(), writer.info(), &image, packingOf(effort), &output, rows.data())) throw std::bad_alloc();
   return output;
 }

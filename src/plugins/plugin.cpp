@@ -32,7 +32,7 @@ OpenedPlugin openPlugin(const std::string& library, const char* function, const 
   void* loaded = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* found = loaded ? dlsym(loaded, function) : nullptr;
   if (found) return {found, ""};
-  const char* why = dlerror();
+  const char* why = dlerror();  // NOLINT(concurrency-mt-unsafe): glibc's is of the thread
   return {nullptr, why ? why : path};
 }
 
