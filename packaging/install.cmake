@@ -1,5 +1,6 @@
-# Where things go on a robot, by package: the program (edgeslam), the library (libedgeslam2), what programs are built with
-# (libedgeslam-dev), and what ROS 2 needs (edgeslam-ros2). The places are systemd's and Debian's; the service expects /usr/bin. Its user is made by sysusers.d.
+# Where things go on a robot, by package: the program (edgeslam), what only videos and boards with markers need
+# (edgeslam-tools), the library (libedgeslam2), what programs are built with (libedgeslam-dev), and what ROS 2 needs
+# (edgeslam-ros2). The places are systemd's and Debian's; the service expects /usr/bin. Its user is made by sysusers.d.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -14,6 +15,7 @@ install(FILES README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/edgeslam COMPON
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/edgeslam COMPONENT edgeslam)
 install(FILES packaging/edgeslam.bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
   RENAME edgeslam COMPONENT edgeslam)
+install(TARGETS edgeslam_video edgeslam_markers LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/edgeslam COMPONENT edgeslam-tools)
 if(EDGESLAM_HAS_ROS2)
   install(TARGETS edgeslam_ros2_dds LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/edgeslam COMPONENT edgeslam-ros2)
   set(ros2_package edgeslam-ros2)
@@ -36,7 +38,7 @@ set(changes ${CMAKE_BINARY_DIR}/changelog.gz)
 execute_process(COMMAND ${GZIP} -9nc ${CMAKE_SOURCE_DIR}/packaging/debian/changelog OUTPUT_FILE ${changes}
   COMMAND_ERROR_IS_FATAL ANY)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS packaging/debian/changelog)
-foreach(package edgeslam libedgeslam2 libedgeslam-dev ${ros2_package})
+foreach(package edgeslam edgeslam-tools libedgeslam2 libedgeslam-dev ${ros2_package})
   install(FILES packaging/debian/copyright ${changes} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
     COMPONENT ${package})
 endforeach()

@@ -18,7 +18,7 @@ function(edgeslam_manual_page name line)
   add_custom_command(OUTPUT ${page}.gz
     COMMAND ${CMAKE_COMMAND} -E make_directory ${manual_folder}
     COMMAND ${HELP2MAN} --no-info --section=1 --version-string=${PROJECT_VERSION} --source "Edge SLAM ${PROJECT_VERSION}"
-      --name ${line} --include ${sections} --output ${page} ${command}
+      --name "${line}" --include ${sections} --output ${page} ${command}
     COMMAND sed -i -e "2s/EDGESLAM \\([A-Z-]*\\) /EDGESLAM-\\1 /" -e "4s/^edgeslam \\([a-z-]* \\\\-\\)/edgeslam-\\1/" ${page}
     COMMAND ${GZIP} -9nf ${page}
     DEPENDS edgeslam ${sections} VERBATIM)

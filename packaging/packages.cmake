@@ -12,6 +12,7 @@ set(CPACK_PACKAGE_VENDOR "Edge SLAM")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 if(EDGESLAM_DEBUG_SYMBOLS)
   set(CPACK_DEBIAN_EDGESLAM_DEBUGINFO_PACKAGE ON)  # strips, too
+  set(CPACK_DEBIAN_EDGESLAM-TOOLS_DEBUGINFO_PACKAGE ON)
   set(CPACK_DEBIAN_LIBEDGESLAM2_DEBUGINFO_PACKAGE ON)
   set(CPACK_DEBIAN_EDGESLAM-ROS2_DEBUGINFO_PACKAGE ON)
 else()
@@ -20,7 +21,7 @@ endif()
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
   WORLD_READ WORLD_EXECUTE)
-set(CPACK_COMPONENTS_ALL edgeslam libedgeslam2 libedgeslam-dev ${ros2_package})
+set(CPACK_COMPONENTS_ALL edgeslam edgeslam-tools libedgeslam2 libedgeslam-dev ${ros2_package})
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -53,11 +54,23 @@ This package has the command, the service and its configuration.")
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_NAME edgeslam)
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_RECOMMENDS "libcamera-ipa")
-set(CPACK_DEBIAN_EDGESLAM_PACKAGE_SUGGESTS ${ros2_package})
+string(REPLACE ";" ", " suggested "edgeslam-tools;${ros2_package}")
+set(CPACK_DEBIAN_EDGESLAM_PACKAGE_SUGGESTS ${suggested})
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_DEPENDS "procps, systemd | systemd-standalone-sysusers")  # procps: kill, to reload
 set(CPACK_DEBIAN_EDGESLAM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/conffiles
   ${CMAKE_SOURCE_DIR}/packaging/debian/postinst ${CMAKE_SOURCE_DIR}/packaging/debian/prerm
   ${CMAKE_SOURCE_DIR}/packaging/debian/postrm)
+
+set(CPACK_COMPONENT_EDGESLAM-TOOLS_DESCRIPTION "monocular SLAM on image edges, videos and boards with markers
+Edge SLAM tells a robot with one camera where it is, at every frame, also in
+front of bare walls: it follows points on image edges, builds a 3D map of them,
+and gives a pose with its uncertainty.
+
+This package lets the command read videos, and calibrate cameras with boards
+that have markers (ChArUco, AprilGrid), for the desk rather than the robot.")
+set(CPACK_DEBIAN_EDGESLAM-TOOLS_PACKAGE_NAME edgeslam-tools)
+set(CPACK_DEBIAN_EDGESLAM-TOOLS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_EDGESLAM-TOOLS_PACKAGE_DEPENDS "edgeslam (= ${PROJECT_VERSION})")
 
 set(CPACK_COMPONENT_EDGESLAM-ROS2_DESCRIPTION "monocular SLAM on image edges, messages to ROS 2
 Edge SLAM tells a robot with one camera where it is, at every frame, also in

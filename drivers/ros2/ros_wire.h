@@ -9,6 +9,7 @@
 
 #include "drivers/ros2/ros_diagnostics.h"
 #include "drivers/ros2/ros_messages.h"
+#include "plugins/plugin.h"
 
 namespace edgeslam {
 
@@ -44,10 +45,7 @@ struct OpenedRosWire {
   bool may_come = false;          // then: by itself, as with a network that is not up yet
 };
 
-// Where the library may be: beside the program as it is built, and where its package puts it.
-std::vector<std::string> rosWireFolders();
-
-OpenedRosWire openRosWire(const RosWireSetup& setup, const std::vector<std::string>& folders = rosWireFolders());
+OpenedRosWire openRosWire(const RosWireSetup& setup, const std::vector<std::string>& folders = pluginFolders());
 
 // What the library gives: `problem` where it returns null.
 extern "C" using OpenRosWireFunction = RosWire * (const RosWireSetup& setup, std::string& problem);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 
 #include "drivers/lcm/messages.h"
 #include "drivers/viewer/message_bytes.h"
+#include "image_formats/jpeg.h"
 
 namespace edgeslam {
 namespace {
@@ -139,8 +139,7 @@ std::string stateMessage(const ViewedState& state, const std::vector<FrameSample
 std::string pictureMessage(const FrameLook& look) {
   if (!look.images || look.images->pyramid.levels.empty()) return "";
   const cv::Mat& whole = look.images->pyramid.levels[0];
-  std::vector<unsigned char> jpeg;
-  cv::imencode(".jpg", shownLevel(look.images->pyramid), jpeg, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality});
+  const std::vector<unsigned char> jpeg = encodeJpeg(shownLevel(look.images->pyramid), jpeg_quality);
   std::string edges;
   appendEdges(edges, look.edges);
   std::string message = beginBinary(ViewMessage::picture, {{"index", look.index},

@@ -6,7 +6,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
 #include "app/command_line.h"
@@ -17,6 +16,7 @@
 #include "edgeslam/input_error.h"
 #include "files/atomic_file.h"
 #include "files/format_text.h"
+#include "image_formats/png.h"
 #include "map/map_figures.h"
 #include "map/saved_map.h"
 #include "map/worlds.h"
@@ -55,8 +55,7 @@ std::string inWords(const Map& map) {
 }
 
 void writePicture(const std::string& path, const Map& map) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", drawMapFromAbove(map), png);
+  const std::vector<unsigned char> png = encodePng(drawMapFromAbove(map));
   writeFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -17,6 +17,7 @@
 #include "files/format_text.h"
 #include "frames/image_file.h"
 #include "geometry/camera_mask.h"
+#include "image_formats/png.h"
 #include "recording/open_frame_source.h"
 
 namespace edgeslam {
@@ -34,8 +35,7 @@ std::string overlayPath(const std::string& output) {
 }
 
 void writePng(const std::string& path, const cv::Mat& image) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", image, png);
+  const std::vector<unsigned char> png = encodePng(image);
   writeFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 

@@ -223,7 +223,10 @@ cv::Size chessboardSeen(const cv::Mat& grey) {
   return {std::max(meta.cols, meta.rows), std::min(meta.cols, meta.rows)};
 }
 
-std::string otherBoardSeen(const cv::Mat& grey, const Board& board) {
+namespace {
+
+// What markers there are besides those of the board, with the width of their border; otherwise empty.
+std::string otherMarkersSeen(const cv::Mat& grey, const Board& board) {
   for (const MarkerFamily family : {MarkerFamily::apriltag_36h11, MarkerFamily::aruco_4x4, MarkerFamily::aruco_5x5,
                                     MarkerFamily::aruco_6x6, MarkerFamily::aruco_7x7}) {
     for (const int border : {1, 2}) {
@@ -243,6 +246,14 @@ std::string otherBoardSeen(const cv::Mat& grey, const Board& board) {
              (border == 1 ? " cell" : " cells") + " wide";
     }
   }
+  return "";
+}
+
+}  // namespace
+
+std::string otherBoardSeen(const cv::Mat& grey, const Board& board) {
+  const std::string markers = markersCanBeFound() ? otherMarkersSeen(grey, board) : "";
+  if (!markers.empty()) return markers;
   const cv::Size seen = chessboardSeen(grey);
   if (seen.empty()) return "";
   const bool same = board.kind == BoardKind::chessboard && seen.width == std::max(board.columns, board.rows) &&

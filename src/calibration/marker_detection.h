@@ -1,4 +1,5 @@
-// Square markers (ArUco, AprilTag 36h11) in an image and their patterns: all that OpenCV's versions do differently.
+// Square markers (ArUco, AprilTag 36h11) in an image and their patterns. All but markersCanBeFound() throws InputError
+// where the library that finds them is not installed.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,6 +10,9 @@
 #include "calibration/board.h"
 
 namespace edgeslam {
+
+// Whether that library is installed.
+bool markersCanBeFound();
 
 struct DetectedMarker {
   int number = 0;

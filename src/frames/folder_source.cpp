@@ -55,8 +55,7 @@ class FolderSource : public FrameSource {
   FolderSource(std::string kind, std::vector<StampedFile> files, FrameCompanions companions)
       : kind_(std::move(kind)), files_(std::move(files)), companions_(std::move(companions)) {
     if (companions_.camera) {
-      expected_size_ = {companions_.camera->width, companions_.camera->height};
-      expected_by_ = companions_.camera_path + " says";
+      expected_ = {{companions_.camera->width, companions_.camera->height}, companions_.camera_path + " says"};
     }
   }
 
@@ -66,20 +65,12 @@ class FolderSource : public FrameSource {
     Frame frame;
     frame.index = static_cast<std::int64_t>(next_++);
     frame.time_ns = file.time_ns;
-    DecodedImage image = readGreyImage(file.path);
+    DecodedImage image = readGreyImage(file.path, expected_);
     if (!image.problem.empty()) {
       frame.problem = image.problem;
       return frame;
     }
-    const std::string problem = sizeProblem(image.grey.size(), expected_size_, expected_by_);
-    if (!problem.empty()) {
-      frame.problem = file.path + ": " + problem;
-      return frame;
-    }
-    if (expected_size_.empty()) {
-      expected_size_ = image.grey.size();
-      expected_by_ = "those before are";
-    }
+    if (expected_.size.empty()) expected_ = {image.grey.size(), "those before are"};
     frame.grey = std::move(image.grey);
     return frame;
   }
@@ -96,8 +87,7 @@ class FolderSource : public FrameSource {
   std::vector<StampedFile> files_;
   FrameCompanions companions_;
   std::size_t next_ = 0;
-  cv::Size expected_size_;
-  std::string expected_by_;
+  ExpectedSize expected_;
 };
 
 }  // namespace

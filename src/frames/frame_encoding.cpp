@@ -1,17 +1,18 @@
 #include "frames/frame_encoding.h"
 
-#include <opencv2/imgcodecs.hpp>
+#include <new>
+
+#include "image_formats/png.h"
 
 namespace edgeslam {
 
 bool encodeFrame(const cv::Mat& grey, FrameCode code, std::vector<unsigned char>& png) {
-  const std::vector<int> packed{cv::IMWRITE_PNG_STRATEGY, cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY};
-  const std::vector<int> stored{cv::IMWRITE_PNG_COMPRESSION, 0};
   try {
-    return cv::imencode(".png", grey, png, code == FrameCode::packed ? packed : stored);
-  } catch (const cv::Exception&) {  // an assertion on what libpng, which had no memory, answered
+    png = encodePng(grey, code == FrameCode::packed ? PngEffort::huffman : PngEffort::stored);
+  } catch (const std::bad_alloc&) {
     return false;
   }
+  return true;
 }
 
 }  // namespace edgeslam

@@ -10,10 +10,10 @@ namespace edgeslam {
 enum class FrameCode { packed, stored };
 
 // `grey` (CV_8U) as PNG, lossless. Packed, of PNG's ways the one that takes the least time: each pixel's difference to
-// its left neighbour (what OpenCV does unless told a level), Huffman-coded. 640 x 480 pixels take 2.1 ms of an EPYC
-// core and 120 to 170 KB; zlib's level 1 takes 5.7 ms and gives larger files. A PGM takes 0.05 ms but 307 KB: over 9
-// MB/s at 30 frames/s, which wears out an SD card and halves the time that fits into the budget. Stored, a PNG is
-// hardly larger than that, and takes little but its checksums. False where there is no memory for it.
+// its left neighbour, Huffman-coded. 640 x 480 pixels take 2.1 ms of an EPYC core and 120 to 170 KB; zlib's level 1
+// takes 5.7 ms and gives larger files. A PGM takes 0.05 ms but 307 KB: over 9 MB/s at 30 frames/s, which wears out an
+// SD card and halves the time that fits into the budget. Stored, a PNG is hardly larger than that, and takes little but
+// its checksums. False where there is no memory for it.
 bool encodeFrame(const cv::Mat& grey, FrameCode code, std::vector<unsigned char>& png);
 
 }  // namespace edgeslam

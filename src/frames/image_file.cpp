@@ -3,43 +3,16 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <string_view>
-#include <vector>
 
-#include "frames/image_header.h"
+#include "image_formats/image_header.h"
+#include "image_formats/jpeg.h"
+#include "image_formats/netpbm.h"
+#include "image_formats/png.h"
 
 namespace edgeslam {
 namespace {
-
-using Bytes = std::vector<unsigned char>;
-
-bool isJpeg(const Bytes& bytes) { return bytes.size() > 2 && bytes[0] == 0xFF && bytes[1] == 0xD8; }
-
-// Walks the segments of a JPEG file to its end-of-image marker (ISO 10918-1, annex B). An embedded thumbnail has such a
-// marker too, so the last bytes alone don't tell.
-bool jpegIsWhole(const Bytes& bytes) {
-  std::size_t at = 2;
-  while (at + 1 < bytes.size()) {
-    if (bytes[at] != 0xFF) {  // entropy-coded data
-      ++at;
-      continue;
-    }
-    const unsigned char marker = bytes[at + 1];
-    if (marker == 0xD9) return true;
-    if (marker == 0xFF) {
-      ++at;
-      continue;
-    }
-    at += 2;
-    const bool stands_alone = marker == 0x00 || marker == 0x01 || (marker >= 0xD0 && marker <= 0xD8);
-    if (stands_alone) continue;
-    if (at + 1 >= bytes.size()) return false;
-    at += static_cast<std::size_t>(bytes[at]) * 256 + bytes[at + 1];
-  }
-  return false;
-}
 
 // A decoder would make room for what a few bytes claim.
 bool isTooLarge(const ClaimedSize& size) {
@@ -49,9 +22,42 @@ bool isTooLarge(const ClaimedSize& size) {
 
 std::string sizeText(cv::Size size) { return std::to_string(size.width) + " x " + std::to_string(size.height); }
 
+// Why the bytes are not worth decoding, by their header and length; otherwise empty.
+std::string problemOfHeader(std::string_view bytes, const ExpectedSize& expected) {
+  const auto format = imageFormat(bytes);
+  if (!format) {
+    const std::string other = otherImageFormat(bytes);
+    return other.empty() ? "is no PNG, JPEG, PGM (P5) or PPM (P6) image" : "is " + other + "; convert it to PNG";
+  }
+  const auto claimed = claimedSize(bytes);
+  if (claimed && isTooLarge(*claimed)) return "too large for an image";
+  if (format == ImageFormat::jpeg && !jpegIsWhole(bytes)) return "is cut off";
+  if (!claimed) return "is no image that can be decoded, or is damaged";
+  const cv::Size size(static_cast<int>(claimed->width), static_cast<int>(claimed->height));
+  std::string wrong = sizeProblem(size, expected.size, expected.by);
+  if (!wrong.empty()) return wrong;
+  if (!canHoldItsSize(bytes)) {
+    return "is cut off or damaged: " + sizeText(size) + " pixels are not in " + std::to_string(bytes.size()) + " bytes";
+  }
+  return "";
+}
+
+cv::Mat decode(std::string_view bytes) {
+  switch (*imageFormat(bytes)) {
+    case ImageFormat::png:
+      return decodePng(bytes);
+    case ImageFormat::jpeg:
+      return decodeJpeg(bytes);
+    case ImageFormat::pgm:
+    case ImageFormat::ppm:
+      break;
+  }
+  return decodeNetpbm(bytes);
+}
+
 }  // namespace
 
-DecodedImage readGreyImage(const std::string& path) {
+DecodedImage readGreyImage(const std::string& path, const ExpectedSize& expected) {
   constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 29;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -60,28 +66,17 @@ DecodedImage readGreyImage(const std::string& path) {
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || size > largest_file) return {{}, path + ": too large for an image"};
   std::ifstream file(path, std::ios::binary);
-  const Bytes bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file || bytes.size() != size) return {{}, path + ": cannot be read"};
+  std::string bytes(size, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(size));
+  const bool is_whole = file && file.peek() == std::ifstream::traits_type::eof();
+  if (!is_whole) return {{}, path + ": cannot be read"};
   if (bytes.empty()) return {{}, path + ": is empty"};
-  const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  // OpenCV alone would hand some bytes to GDAL, through a file in /tmp; among GDAL's formats are some that name other
-  // files and hosts to read.
-  if (!isImageFormat(content)) return {{}, path + ": is no PNG, JPEG, BMP, PGM, PPM, TIFF or WebP image"};
-  const auto size_claimed = claimedSize(content);
-  if (size_claimed && isTooLarge(*size_claimed)) return {{}, path + ": too large for an image"};
-  if (isJpeg(bytes) && !jpegIsWhole(bytes)) return {{}, path + ": is cut off"};
-  if (!size_claimed) return {{}, path + ": is no image that can be decoded, or is damaged"};
-
-  cv::Mat decoded;
-  try {
-    decoded = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
-  } catch (const cv::Exception&) {
-    decoded.release();
-  }
-  if (decoded.empty()) return {{}, path + ": is no image that can be decoded, or is damaged"};
-  if (decoded.depth() == CV_16U) decoded.convertTo(decoded, CV_8U, 1.0 / 257.0);
-  if (decoded.type() != CV_8UC1) return {{}, path + ": expected 8 or 16 bits a channel"};
-  return {decoded, ""};
+  const std::string problem = problemOfHeader(bytes, expected);
+  if (!problem.empty()) return {{}, path + ": " + problem};
+  cv::Mat grey = decode(bytes);
+  if (grey.empty()) return {{}, path + ": is no image that can be decoded, or is damaged"};
+  if (grey.depth() == CV_16U) grey.convertTo(grey, CV_8U, 1.0 / 257.0);
+  return {grey, ""};
 }
 
 std::string sizeProblem(cv::Size size, cv::Size expected, const std::string& expected_by) {

@@ -11,10 +11,17 @@ struct DecodedImage {
   std::string problem;  // with the path, why it could not be read
 };
 
-// PNG, JPEG, BMP, PBM to PPM, TIFF and WebP, told by how the file begins; 16-bit images are scaled to 8 bits. Stored
+// The size that an image must have, and who says so, as "camera.yaml says". An empty one is any size.
+struct ExpectedSize {
+  cv::Size size;
+  std::string by;
+};
+
+// PNG, JPEG, and binary PGM and PPM, told by how the file begins; 16-bit images are scaled to 8 bits. Stored
 // orientation (EXIF) is ignored: pixels stay where the sensor has them. A truncated JPEG, which decoders fill up with
-// grey, is a problem here, and so is one of over 2^26 pixels, by its header.
-DecodedImage readGreyImage(const std::string& path);
+// grey, is a problem here. So is, by its header alone, an image of another size than the one expected, of over 2^26
+// pixels, and one that claims more pixels than can be in so small a file.
+DecodedImage readGreyImage(const std::string& path, const ExpectedSize& expected = {});
 
 // Why an image of `size` cannot follow those of `expected`, naming both; empty where they are the same or none is
 // expected.

@@ -1,10 +1,10 @@
 #include "frames/mask_file.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
 #include "edgeslam/input_error.h"
 #include "frames/image_file.h"
+#include "image_formats/png.h"
 
 namespace edgeslam {
 
@@ -25,8 +25,7 @@ std::string maskSizeProblem(const CameraMask& mask, const Camera& camera) {
 }
 
 std::string encodeMask(const CameraMask& mask) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", ~mask.masked, png);
+  const std::vector<unsigned char> png = encodePng(~mask.masked);
   return {png.begin(), png.end()};
 }
 

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <utility>
 #include <vector>
 
 #include "files/text_file.h"
 #include "frames/image_file.h"
+#include "frames/video_decoder.h"
 
 namespace edgeslam {
 namespace {
@@ -38,11 +38,7 @@ class VideoPictures {
   VideoPictures(const std::string& path, const FrameCompanions& companions) : path_(path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw InputError(path + ": no such video file");
-    // FFmpeg alone: other back ends read a '%' in the name as a pattern of image files.
-    if (!capture_.open(path, cv::CAP_FFMPEG)) {
-      throw InputError(path + ": cannot be opened as a video; it is damaged, cut off, or of an unknown format");
-    }
-    capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
+    decoder_ = openVideo(path);
     if (companions.camera) {
       expected_size_ = {companions.camera->width, companions.camera->height};
       expected_by_ = companions.camera_path + " says";
@@ -50,50 +46,35 @@ class VideoPictures {
   }
 
   // False at the end of the video.
-  bool advance() {
-    try {
-      return capture_.grab();
-    } catch (const cv::Exception&) {
-      return false;
-    }
-  }
+  bool advance() { return decoder_->advance(); }
 
   // Puts the current picture, or what is wrong with it, into the frame.
   void decodeInto(Frame& frame) {
-    cv::Mat picture;
-    try {
-      if (!capture_.retrieve(picture)) picture.release();
-    } catch (const cv::Exception&) {
-      picture.release();
-    }
+    const VideoPicture picture = decoder_->picture();
     const std::string place = path_ + ": frame " + std::to_string(frame.index) + " ";
-    if (picture.empty()) {
+    if (picture.pixels == nullptr) {
       frame.problem = place + "cannot be decoded";
       return;
     }
-    const std::string problem = sizeProblem(picture.size(), expected_size_, expected_by_);
+    const cv::Size size(picture.width, picture.height);
+    const std::string problem = sizeProblem(size, expected_size_, expected_by_);
     if (!problem.empty()) {
       frame.problem = place + problem;
       return;
     }
     if (expected_size_.empty()) {
-      expected_size_ = picture.size();
+      expected_size_ = size;
       expected_by_ = "those before are";
     }
-    if (picture.channels() == 1) {
-      frame.grey = picture.clone();
-    } else {
-      cv::cvtColor(picture, frame.grey, cv::COLOR_BGR2GRAY);
-    }
+    const cv::Mat colour(size, CV_8UC3, const_cast<unsigned char*>(picture.pixels), picture.stride);
+    cv::cvtColor(colour, frame.grey, cv::COLOR_BGR2GRAY);
   }
 
-  double positionMilliseconds() const { return capture_.get(cv::CAP_PROP_POS_MSEC); }
-  double framesPerSecond() const { return capture_.get(cv::CAP_PROP_FPS); }
-  double frameCount() const { return capture_.get(cv::CAP_PROP_FRAME_COUNT); }
+  const VideoDecoder& decoder() const { return *decoder_; }
 
  private:
   std::string path_;
-  cv::VideoCapture capture_;
+  std::unique_ptr<VideoDecoder> decoder_;
   cv::Size expected_size_;
   std::string expected_by_;
 };
@@ -168,7 +149,7 @@ class VideoSource : public FrameSource {
   }
 
   std::int64_t size() const override {
-    const double count = pictures_.frameCount();
+    const double count = pictures_.decoder().frameCount();
     return std::isfinite(count) && count > 0 && count < 1e9 ? static_cast<std::int64_t>(count) : 0;
   }
   std::string kind() const override { return "video"; }
@@ -179,12 +160,12 @@ class VideoSource : public FrameSource {
 
  private:
   std::int64_t timeOfCurrent(std::int64_t index) const {
-    const double position_ns = 1e6 * pictures_.positionMilliseconds();
+    const double position_ns = 1e6 * pictures_.decoder().positionMilliseconds();
     if (std::isfinite(position_ns) && position_ns >= 0 && position_ns < 1e18) {
       const std::int64_t time_ns = std::llround(position_ns);
       if (index == 0 || time_ns > previous_time_ns_) return time_ns;
     }
-    const double rate = pictures_.framesPerSecond();
+    const double rate = pictures_.decoder().framesPerSecond();
     if (!(rate > 0 && rate < 1e6)) {
       throw InputError(video_path_ + ": has neither frame times that increase nor a frame rate; put it into a folder " +
                        "with a times.txt of one time stamp [s] a line");

@@ -3,10 +3,9 @@
 #include <zlib.h>
 
 #include <array>
-#include <new>
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "image_formats/png.h"
 #include "map/little_endian.h"
 #include "map/map_check.h"
 
@@ -87,20 +86,9 @@ std::uint32_t checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-// PNG takes every grey image. What can be missing is memory, of which OpenCV says only that an assertion failed.
-std::vector<unsigned char> encodedPng(const cv::Mat& grey) {
-  std::vector<unsigned char> png;
-  try {
-    if (cv::imencode(".png", grey, png)) return png;
-  } catch (const cv::Exception&) {
-    throw std::bad_alloc();
-  }
-  throw std::bad_alloc();
-}
-
 void writeImages(ByteWriter& writer, const FrameImages& images) {
   CV_Assert(!images.pyramid.levels.empty() && images.pyramid.levels.front().type() == CV_8U);
-  const std::vector<unsigned char> png = encodedPng(images.pyramid.levels.front());
+  const std::vector<unsigned char> png = encodePng(images.pyramid.levels.front());
   writer(images.frame_index, images.time_ns, static_cast<std::int32_t>(images.pyramid.levels.size()),
          std::string(png.begin(), png.end()));
 }
@@ -170,15 +158,6 @@ cv::Size sizeInPng(std::string_view png) {
   }
   if (sides[0] > largest_camera_side || sides[1] > largest_camera_side) return {};
   return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
-}
-
-cv::Mat decodePng(std::string_view png) {
-  const std::vector<unsigned char> bytes(png.begin(), png.end());
-  try {
-    return cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {
-    return {};
-  }
 }
 
 std::shared_ptr<const FrameImages> readImages(ByteReader& reader, cv::Size size) {

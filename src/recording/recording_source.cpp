@@ -220,16 +220,10 @@ std::optional<Frame> RecordingSource::next() {
   frame.problem = recorded.problem;
   if (!frame.problem.empty()) return frame;
   const std::string path = framePath(recording_, recorded.time_ns);
-  DecodedImage image = readGreyImage(path);
+  DecodedImage image = readGreyImage(
+      path, {{recording_.camera.width, recording_.camera.height}, recording_.folder + "/" + tum_camera_name + " says"});
   frame.problem = image.problem;
-  if (!frame.problem.empty()) return frame;
-  const std::string problem = sizeProblem(image.grey.size(), {recording_.camera.width, recording_.camera.height},
-                                          recording_.folder + "/" + tum_camera_name + " says");
-  if (problem.empty()) {
-    frame.grey = std::move(image.grey);
-  } else {
-    frame.problem = path + ": " + problem;
-  }
+  frame.grey = std::move(image.grey);
   return frame;
 }
 

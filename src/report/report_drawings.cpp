@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "image_formats/jpeg.h"
 
 namespace edgeslam {
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::size_t most_drawings = 24;
 constexpr int widest_drawing = 800;  // [px]
+constexpr int jpeg_quality = 82;
 
 std::string base64(const std::vector<unsigned char>& bytes) {
   constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -41,8 +43,7 @@ ordered_json drawingsJson(const RunResult& result, const Clock& clock) {
       const double scale = static_cast<double>(widest_drawing) / image.cols;
       cv::resize(result.drawings[i].image, image, cv::Size(), scale, scale, cv::INTER_AREA);
     }
-    std::vector<unsigned char> jpeg;
-    if (!cv::imencode(".jpg", image, jpeg, {cv::IMWRITE_JPEG_QUALITY, 82})) continue;
+    const std::vector<unsigned char> jpeg = encodeJpeg(image, jpeg_quality);
     const std::int64_t index = result.drawings[i].index;
     ordered_json drawing = {{"frame", index},
                             {"width", image.cols},

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <system_error>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "evaluation/trajectory.h"
 #include "files/format_text.h"
 #include "files/text_file.h"
+#include "image_formats/png.h"
 #include "simulator/inertial_simulation.h"
 #include "simulator/wheel_simulation.h"
 
@@ -62,11 +62,10 @@ void writeContents(const SimulatedSequence& sequence, const fs::path& folder,
                              std::to_string(sequence.options.seed) + "\n";
   std::string list = "# " + source + "# timestamp filename\n";
   Trajectory trajectory;
-  std::vector<unsigned char> png;
   for (int i = 0; i < sequence.size(); ++i) {
     const SimulatedFrame frame = sequence.frame(i);
     const std::string stamp = formatStamp(frame.time_ns), name = "rgb/" + stamp + ".png";
-    if (!cv::imencode(".png", frame.grey, png, {cv::IMWRITE_PNG_COMPRESSION, 1})) throw writeError(folder / name, EIO);
+    const std::vector<unsigned char> png = encodePng(frame.grey, PngEffort::small);
     writeFile(folder / name, png.data(), png.size());
     list.append(stamp).append(" ").append(name).append("\n");
     trajectory.push_back({frame.time_ns, frame.world_T_camera});

@@ -28,7 +28,7 @@ package=$(echo "$folder"/packages/edgeslam_*_arm64.deb)
 [[ $(dpkg-deb -f "$package" Architecture) == arm64 ]] || fail "architecture: $(dpkg-deb -f "$package" Architecture)"
 depends=$(dpkg-deb -f "$package" Depends)
 echo "depends: $depends"
-for library in libc6 libopencv-core406 liblcm1 libsystemd0; do
+for library in libc6 libceres3 liblcm1 libsystemd0; do
   [[ $depends == *$library* ]] || fail "it does not depend on $library"
 done
 

@@ -7,6 +7,9 @@ sources=$1
 folder=$2
 suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
 most_installed_kib=25000
+# What a robot gets with the program, besides a Debian that has systemd.
+most_packages=60
+most_mib=120
 . "$(dirname "${BASH_SOURCE[0]}")/clean_debian.sh"
 
 for tool in mmdebstrap lintian help2man dpkg-shlibdeps; do
@@ -26,6 +29,8 @@ install() { run_or_fail "installation of $*" sh -c "apt-get install -qq -y --no-
 installed() { run dpkg-query -W -f "\${$2}" "$1"; }
 # Of a package's files [KiB].
 size_of() { run sh -c "dpkg -L $1 | while read -r name; do if [ -f \"\$name\" ] && [ ! -L \"\$name\" ]; then stat -c %s \"\$name\"; fi; done" | awk '{sum += $1} END {printf "%d", sum / 1024}'; }
+# Of all packages.
+installed_mib() { run dpkg-query -W -f '${Installed-Size}\n' | awk '{sum += $1} END {printf "%d", sum / 1024}'; }
 # Everything but what apt and dpkg keep books in.
 files() { (cd "$root" && find . -xdev \( -path ./proc -o -path ./var/lib/dpkg -o -path ./var/lib/apt -o -path ./var/cache -o -path ./var/log -o -path ./tmp \) -prune -o -print | sort); }
 
@@ -37,7 +42,7 @@ make_packages() {
     { tail -20 "$folder/build.log"; fail "build of the packages"; }
   rm -rf "$folder/_CPack_Packages"
   ls -l "$folder"/*.{deb,ddeb} | awk '{print $5 " bytes", $9}' | sed "s#$folder/##"
-  for package in edgeslam_*.deb libedgeslam2_*.deb libedgeslam-dev_*.deb edgeslam-dbgsym_*.ddeb libedgeslam2-dbgsym_*.ddeb; do
+  for package in edgeslam_*.deb edgeslam-tools_*.deb libedgeslam2_*.deb libedgeslam-dev_*.deb edgeslam-dbgsym_*.ddeb libedgeslam2-dbgsym_*.ddeb; do
     [[ -n $(compgen -G "$folder/$package") ]] || fail "no package $package"
   done
   local errors
@@ -51,12 +56,15 @@ install_program() {
   install systemd
   files > "$folder/before.txt"
   cp "$folder"/*.{deb,ddeb} "$root/tmp/"
-  local packages_before
+  local packages_before mib_before packages mib
   packages_before=$(run dpkg-query -W | wc -l)
+  mib_before=$(installed_mib)
   install "/tmp/edgeslam_*_$arch.deb"
-  check "installed: $(size_of edgeslam) KiB, and $(($(run dpkg-query -W | wc -l) - packages_before - 1)) packages that it needs," \
-    "$(run dpkg-query -W -f '${Installed-Size}\n' | awk '{sum += $1} END {printf "%d MiB", sum / 1024}') in all with the system"
+  packages=$(($(run dpkg-query -W | wc -l) - packages_before))
+  mib=$(($(installed_mib) - mib_before))
+  check "installed: $(size_of edgeslam) KiB; with what it needs $packages packages, $mib MiB"
   (($(size_of edgeslam) < most_installed_kib)) || fail "more than $most_installed_kib KiB"
+  ((packages <= most_packages && mib <= most_mib)) || fail "more than $most_packages packages or $most_mib MiB"
 }
 
 run_program() {
@@ -76,6 +84,25 @@ run_program() {
   run_or_fail replay edgeslam replay /tmp/recording --output /tmp/result
   [[ -s $root/tmp/result/trajectory.txt && -s $root/tmp/result/report.html ]] || fail "no result"
   check "the program runs: check-config, simulate, replay"
+}
+
+# What is in edgeslam-tools is named without it, and works with it.
+add_tools() {
+  local packages_before said
+  packages_before=$(run dpkg-query -W | wc -l)
+  head -c 1000 /dev/zero > "$root/tmp/walk.mp4"
+  said=$(run edgeslam replay /tmp/walk.mp4 --output /tmp/result 2>&1 || true)
+  [[ $said == *"/tmp/walk.mp4: videos are read by the package edgeslam-tools"* ]] || fail "of a video without the tools it says: $said"
+  board="edgeslam calibrate board --type charuco --columns 8 --rows 6 --square 20mm --output /tmp/board.pdf"
+  said=$(run $board 2>&1 || true)
+  [[ $said == *"boards with markers need the package edgeslam-tools"* ]] || fail "of markers without the tools it says: $said"
+  run_or_fail "a chessboard without the tools" ${board/charuco/chessboard}
+  rm "$root/tmp/board.pdf"
+  install "/tmp/edgeslam-tools_*_$arch.deb"
+  said=$(run edgeslam replay /tmp/walk.mp4 --output /tmp/result 2>&1 || true)
+  [[ $said == *"/tmp/walk.mp4: cannot be opened as a video"* ]] || fail "of no video it says: $said"
+  run_or_fail "a board with markers" $board
+  check "the tools: $(($(run dpkg-query -W | wc -l) - packages_before)) packages; videos and markers"
 }
 
 build_against_library() {
@@ -116,7 +143,7 @@ upgrade_and_remove() {
   run_or_fail "installation over itself" sh -c "dpkg -i /tmp/edgeslam_*_$arch.deb"
   grep -q "^# mine" "$root/etc/edgeslam/robot.yaml" || fail "an upgrade changes the user's configuration"
   check "an upgrade keeps the user's configuration"
-  run_or_fail removal sh -c "apt-get purge -qq -y edgeslam libedgeslam2 libedgeslam-dev && apt-get autoremove -qq -y --purge"
+  run_or_fail removal sh -c "apt-get purge -qq -y edgeslam edgeslam-tools libedgeslam2 libedgeslam-dev && apt-get autoremove -qq -y --purge"
   local left
   left=$(comm -13 "$folder/before.txt" <(files) | grep -i edgeslam || true)
   [[ -z $left ]] || { echo "$left"; fail "removal leaves these"; }
@@ -126,6 +153,7 @@ upgrade_and_remove() {
 make_packages
 install_program
 run_program
+add_tools
 build_against_library
 look_at_symbols
 upgrade_and_remove

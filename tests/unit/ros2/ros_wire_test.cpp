@@ -26,12 +26,5 @@ TEST(RosWire, AFileThatIsNoLibraryIsRefused) {
   EXPECT_NE(opened.problem.find(folder.path("libedgeslam_ros2_dds.so")), std::string::npos) << opened.problem;
 }
 
-TEST(RosWire, IsLookedForBesideTheProgramAndWhereItIsInstalled) {
-  const std::vector<std::string> folders = rosWireFolders();
-  ASSERT_EQ(folders.size(), 2U);
-  EXPECT_EQ(folders[0].front(), '/');
-  EXPECT_NE(folders[1].find("/edgeslam"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace edgeslam

@@ -1,0 +1,33 @@
+# edgeslam_opencv: what the method takes of OpenCV. Inside the packages it is linked as archives, of which the linker takes what is
+# used: Debian's shared libraries ask for OpenGL's drivers and a compiler for them, 200 MB that a robot has no use for.
+set(opencv_modules calib3d features2d flann imgproc core)
+find_package(OpenCV 4.5 REQUIRED COMPONENTS ${opencv_modules})
+# Markers of calibration boards: until 4.6 in a contributed module, Debian's libopencv-contrib-dev.
+if(OpenCV_VERSION VERSION_LESS 4.7)
+  set(EDGESLAM_OPENCV_MARKERS opencv_aruco)
+else()
+  set(EDGESLAM_OPENCV_MARKERS opencv_objdetect)
+endif()
+find_package(OpenCV REQUIRED COMPONENTS ${EDGESLAM_OPENCV_MARKERS})
+if(EDGESLAM_TESTS OR EDGESLAM_BENCHMARKS)
+  find_package(OpenCV REQUIRED COMPONENTS imgcodecs videoio)
+endif()
+
+add_library(edgeslam_opencv INTERFACE)
+if(NOT EDGESLAM_OPENCV_INSIDE)
+  list(TRANSFORM opencv_modules PREPEND opencv_)
+  target_link_libraries(edgeslam_opencv INTERFACE ${opencv_modules})
+  return()
+endif()
+foreach(module ${opencv_modules})
+  find_library(opencv_archive_${module} NAMES libopencv_${module}.a REQUIRED)
+  list(APPEND opencv_archives ${opencv_archive_${module}})
+endforeach()
+foreach(library tbb lapack blas)  # that the archives ask for
+  find_library(opencv_needs_${library} NAMES ${library} REQUIRED)
+  list(APPEND opencv_needs ${opencv_needs_${library}})
+endforeach()
+add_library(edgeslam_no_opengl STATIC ${CMAKE_CURRENT_LIST_DIR}/no_opengl.cpp)
+set_target_properties(edgeslam_no_opengl PROPERTIES POSITION_INDEPENDENT_CODE ON)
+target_link_libraries(edgeslam_opencv INTERFACE ${opencv_archives} edgeslam_no_opengl ${opencv_needs} ZLIB::ZLIB ${CMAKE_DL_LIBS})
+target_link_options(edgeslam_opencv INTERFACE -Wl,--gc-sections)
