@@ -49,7 +49,7 @@ std::vector<OdometryPose> wheelsBeside(const FrameSource& source, const Measured
   const std::string path = source.wheelOdometryPath();
   const Recording* recording = source.recording();
   const bool is_there = recording || !path.empty();
-  is_used = use.wheels || (is_used && is_there && !configuration.inertia.is_used);
+  is_used = use.wheels || (is_used && is_there);
   if (!is_used) {
     if (!path.empty()) std::cerr << "edgeslam: " << path << " is not used; --wheels uses it\n";
     return {};
@@ -68,9 +68,6 @@ std::vector<OdometryPose> wheelsBeside(const FrameSource& source, const Measured
 }  // namespace
 
 MeasuredBeside measuredBeside(const FrameSource& source, const MeasuredUse& use, Configuration& configuration) {
-  if (use.wheels && (use.imu || configuration.inertia.is_used)) {
-    throw InputError("--wheels: not together with --imu (imu.enabled) yet; each of them tells metres by itself");
-  }
   MeasuredBeside measured;
   measured.inertia = inertiaBeside(source, use, configuration);
   measured.wheels = wheelsBeside(source, use, configuration);

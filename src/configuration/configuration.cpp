@@ -217,9 +217,6 @@ Settings settingsWithSensors(const Configuration& configuration) {
   Settings settings = configuration.settings;
   if (settings.wheels.enabled) useWheels({configuration.body_T_camera, settings.wheels.planar}, settings);
   if (!configuration.inertia.is_used) return settings;
-  if (settings.wheels.enabled) {
-    throw InputError(configuration.source + ": imu.enabled: not together with wheels.enabled yet");
-  }
   if (!configuration.inertia.has_unit) {
     throw InputError(configuration.source +
                      ": imu.enabled: it is not known where the unit sits; give imu.imu_T_camera or imu.calibration");

@@ -63,6 +63,15 @@ TEST_F(Wheels, ARecordingRepeatsTheLiveRunToTheLastByte) {
   }
 }
 
+TEST_F(Wheels, TogetherWithInertiaAreNoWorseThanAlone) {
+  const ReplayedRun both = replayedWith("both", {"--imu", "--wheels"});
+  replayedWith("alone", {"--wheels"});
+  EXPECT_NE(both.outcome.output.find("z is up"), std::string::npos) << both.outcome.output;
+  EXPECT_EQ(both.countGood(covered_from, covered_to), covered_to - covered_from + 1);
+  EXPECT_LT(errorOf("both").translation.rmse, 1.1 * errorOf("alone").translation.rmse + 0.001);
+  EXPECT_NEAR(errorOf("both").reference_T_estimate.scale, 1, 0.05);
+}
+
 TEST_F(Wheels, AreNotUsedUnlessAskedFor) {
   const ReplayedRun run = replayedWith("without", {});
   EXPECT_NE(run.outcome.messages.find("wheel_odometry.txt is not used; --wheels uses it"), std::string::npos)
@@ -81,7 +90,6 @@ TEST_F(Wheels, ThatAreNotThereOrCannotBeUsedAreSaid) {
     EXPECT_NE(outcome.messages.find(message), std::string::npos) << outcome.messages;
   };
   refused(folder_.path(""), {}, "wheel_odometry.txt");
-  refused(input_, {"--imu"}, "--imu");
   folder_.write("wheel_odometry.txt", "1 2 3\n");
   refused(folder_.path(""), {}, "wheel_odometry.txt:1: ");
 }
