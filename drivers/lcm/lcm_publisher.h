@@ -60,8 +60,10 @@ class LcmPublisher {
   // Messages on its channel that were no pose of a body, or too many at once.
   std::int64_t odometryIgnored() const { return wheels_ ? wheels_->ignored() : 0; }
 
-  // The robot's inertial unit, where LcmOptions name a channel for it, else null; for one other thread.
+  // The robot's inertial unit, and its wheel odometry, where LcmOptions name a channel for it, else null; for one other
+  // thread, which then has all of it.
   ImuReceiver* imu() { return imu_.get(); }
+  OdometryReceiver* wheels() { return wheels_.get(); }
 
   // As of now; messages that wait to be sent are not counted yet.
   LcmCounts counts() const;

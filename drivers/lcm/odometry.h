@@ -10,8 +10,8 @@
 
 namespace edgeslam {
 
-// None where the bytes are no pose_t, or the pose none that can be: not finite, over 1e7 m away, a quaternion whose
-// norm is off 1 by over 0.01, a time stamp that is negative or over 1e17.
+// None where the bytes are no pose_t, or the pose none that wheels can say (isUsable()), or its quaternion's norm is
+// off 1 by over 0.01.
 std::optional<OdometryPose> checkOdometry(const void* data, std::size_t bytes);
 
 using OdometryReceiver = MessageReceiver<OdometryPose, 1024>;  // over 1 s at 1000 a second

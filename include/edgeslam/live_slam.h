@@ -51,6 +51,8 @@ class EDGESLAM_PUBLIC LiveSlam {
   // What the inertial unit measured, in order, as it comes; from one thread, which may be another. Never waits. Of use
   // where the configuration has `imu.enabled`. Throws InputError where no unit can have measured it.
   void add(const InertialMeasurement& measurement);
+  // Where the wheels say that the robot is, likewise. Of use where the configuration has `wheels.enabled`.
+  void add(const WheelMeasurement& measurement);
   LiveCounters counters() const;
 
   // No frame follows. Waits until mapping has come to its end.

@@ -39,6 +39,9 @@ class EDGESLAM_PUBLIC Slam {
   // InputError where no unit can have measured it.
   void add(const InertialMeasurement& measurement);
 
+  // Where the wheels say that the robot is, likewise. Of use where the configuration has `wheels.enabled`.
+  void add(const WheelMeasurement& measurement);
+
   // The next frame. Throws InputError where its size is not the calibration's or its time stamp not after the last
   // one's, or a frozen map was not given; nothing is changed then. `index` counts frames.
   PosedFrame process(const GreyImage& image, std::int64_t time_ns);

@@ -1,7 +1,8 @@
 // Frames, poses and map points, as they go into the library and come out of it.
 //
 // Frames of reference: the camera's is x right, y down, z forward; the world is the camera's at the map's first
-// keyframe. Lengths are in map units: one camera cannot know the scale. With an inertial unit PosedFrame tells it.
+// keyframe. Lengths are in map units: one camera cannot know the scale. With an inertial unit, or by
+// the robot's wheels, PosedFrame tells it.
 // Rotations are unit quaternions (w, x, y, z).
 //
 // Worlds: where the camera is lost in a place not seen before, a new map is begun beside the old one. It is a world of
@@ -31,6 +32,14 @@ struct InertialMeasurement {
   std::int64_t time_ns = 0;                       // of the unit's clock: imu.time_offset_s after the frames'
   std::array<double, 3> rotation_rate{0, 0, 0};   // the unit's axes [rad/s]
   std::array<double, 3> specific_force{0, 0, 0};  // the unit's axes [m/s^2]: at rest 9.81 upwards
+};
+
+// Where the wheels say that the robot's body is; the configuration's camera.body_T_camera says where the camera is on
+// it.
+struct WheelMeasurement {
+  std::int64_t time_ns = 0;                       // of the frames' clock
+  std::array<double, 3> position{0, 0, 0};        // in a frame that may drift but not jump, x and y in the floor [m]
+  std::array<double, 4> orientation{1, 0, 0, 0};  // w, x, y, z
 };
 
 // Of the world T camera: takes coordinates in the camera frame to the world.
@@ -66,11 +75,11 @@ struct PosedFrame {
   std::array<double, 36> odometry_covariance{};  // as `covariance`, since the first pose
   int odometry_resets = 0;
   // Where an inertial unit tells it: what a map unit is, and where down is, in this world. Both become known some
-  // seconds after a map's start, and better from then on.
+  // seconds after a map's start, and better from then on. Wheels tell what a map unit is, but not where down is.
   bool is_metric = false;
   double metres_per_unit = 1;
   double scale_sigma = 0;               // standard deviation of it, share of it
-  std::array<double, 3> down{0, 0, 0};  // world, unit
+  std::array<double, 3> down{0, 0, 0};  // world, unit; zero where it is not known
   int tracked_points = 0;               // points followed in the image
   int mapped_points = 0;                // of these with depth, and used for the pose
   double latency_ms = -1;               // from handing the frame over to its pose; negative: not known

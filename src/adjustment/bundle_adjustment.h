@@ -83,15 +83,17 @@ struct BundleSpeedChange {
   Matrix36d first_by_bias = Matrix36d::Zero(), second_by_bias = Matrix36d::Zero();
 };
 
-// What wheels say of two cameras: where the second is, as the first one sees it.
+// What wheels say of two cameras: where the second is, as the first one sees it. By their own metre, which holds the
+// unit of the map; how long that is by inertia is not theirs to say.
 struct BundleWay {
   int first = 0, second = 0;                                // cameras
   Eigen::Vector3d way = Eigen::Vector3d::Zero();            // first camera's frame [m]
   Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();  // of the error [1/m], first camera's frame
   double huber_times = inertial_huber_times;
+  double metres_a_unit = 1;  // of the map, by the wheels
 };
 
-// What these count with.
+// What inertia counts with.
 struct BundleInertia {
   double metres_a_unit = 1;                                // of the map
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();       // world frame [m/s^2]
@@ -100,6 +102,8 @@ struct BundleInertia {
   bool is_free = false;
   Vector6d bias_change = Vector6d::Zero();  // [rate [rad/s]; force [m/s^2]]
   double rate_bias_sigma = 0, force_bias_sigma = 0;
+  // Of the scale, where something else tells it: its standard deviation, share of it. 0: nothing does.
+  double told_metres_a_unit = 1, told_scale_sigma = 0;
 };
 
 // Of what is adjusted of inertia: logarithm of the scale, two tilts of gravity [rad], the biases' change.

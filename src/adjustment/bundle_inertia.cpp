@@ -55,7 +55,7 @@ void evaluate(const BundleInertia& inertia, const BundleTurn& turn, const Camera
 
 void evaluate(const BundleInertia& inertia, const BundleWay& way, const CameraAt& first, const CameraAt& second,
               const Eigen::Vector3d& origin, Term& term, bool derivatives) {
-  const double metres_a_unit = inertia.metres_a_unit;
+  const double metres_a_unit = way.metres_a_unit;
   const Eigen::Vector3d moved = metres_a_unit * (second.centre - first.centre);
   const Eigen::Matrix3d whitening = way.whitening * first.rotation.conjugate().toRotationMatrix();
   term.residual = whitening * moved - way.whitening * way.way;
@@ -67,7 +67,6 @@ void evaluate(const BundleInertia& inertia, const BundleWay& way, const CameraAt
   term.by_twist[0].rightCols<3>() = whitening * (metres_a_unit * skew(first.centre - origin) + skew(moved));
   if (!inertia.is_free) return;
   term.by_inertia.setZero();
-  term.by_inertia.col(0) = whitening * moved;
 }
 
 void evaluate(const BundleInertia& inertia, const BundleSpeedChange& change, const std::array<CameraAt, 3>& cameras,
@@ -144,23 +143,33 @@ void forEachTerm(const BundleProblem& problem, const BundleStructure& structure,
   }
 }
 
-// What is known of the biases before.
+// What is known of the scale and the biases before.
 InertiaVector priorInformation(const BundleInertia& inertia) {
   InertiaVector information = InertiaVector::Zero();
   const auto of = [](double sigma) { return sigma > 0 ? 1 / (sigma * sigma) : 0; };
+  information(0) = of(inertia.told_scale_sigma);
   information.segment<3>(3).setConstant(of(inertia.rate_bias_sigma));
   information.tail<3>().setConstant(of(inertia.force_bias_sigma));
   return information;
 }
 
+// How far the scale's logarithm is from what it was told.
+double scaleChange(const BundleInertia& inertia) {
+  return inertia.told_scale_sigma > 0 ? std::log(inertia.metres_a_unit / inertia.told_metres_a_unit) : 0;
+}
+
 double priorCost(const BundleInertia& inertia) {
   if (!inertia.is_free) return 0;
-  return 0.5 * inertia.bias_change.dot(priorInformation(inertia).tail<6>().cwiseProduct(inertia.bias_change));
+  const InertiaVector information = priorInformation(inertia);
+  const double change = scaleChange(inertia);
+  return 0.5 * inertia.bias_change.dot(information.tail<6>().cwiseProduct(inertia.bias_change)) +
+         0.5 * information(0) * change * change;
 }
 
 void addPrior(const BundleInertia& inertia, BundleLinearization& linearization) {
   const InertiaVector information = priorInformation(inertia);
   linearization.inertia_block.diagonal() += information;
+  linearization.inertia_gradient(0) += information(0) * scaleChange(inertia);
   linearization.inertia_gradient.tail<6>() += information.tail<6>().cwiseProduct(inertia.bias_change);
 }
 

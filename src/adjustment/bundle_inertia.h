@@ -1,5 +1,6 @@
 // What a bundle adjustment does with what an inertial unit says of its cameras: their turns, and how their mean speed
-// changes; and with what wheels say: their turns, and the ways between them, s R_i^T (c_j - c_i) in metres.
+// changes; and with what wheels say: their turns, and the ways between them, m R_i^T (c_j - c_i), where a unit of
+// the map is m metres of the wheels'.
 //
 // With P = s c + R t, the unit's place in metres for a camera at c turned by R, and from times and places of three
 // cameras i, j, k the mean speeds V1 = (P_j - P_i) / T1 and V2 = (P_k - P_j) / T2, preintegration

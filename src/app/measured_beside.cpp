@@ -10,14 +10,14 @@
 namespace edgeslam {
 namespace {
 
-std::vector<InertialSample> recordedInertia(const Recording& recording, bool is_live) {
-  if (recording.decisions.inertia.empty()) {
-    throw InputError(recording.folder + ": the run was recorded without inertial data");
-  }
-  std::vector<InertialSample> samples;
+// None of a recording that is repeated: what was measured is among its decisions.
+template <typename Given, typename Sample>
+std::vector<Sample> recorded(const Recording& recording, const std::vector<Given>& all, Sample Given::*sample,
+                             bool is_live) {
+  std::vector<Sample> samples;
   const bool is_repeated = !is_live && recording.decisions.not_recorded == 0;
   if (is_repeated) return samples;
-  for (const InertiaGiven& given : recording.decisions.inertia) samples.push_back(given.sample);
+  for (const Given& given : all) samples.push_back(given.*sample);
   return samples;
 }
 
@@ -30,46 +30,48 @@ std::vector<InertialSample> inertiaBeside(const FrameSource& source, const Measu
     if (!files.samples.empty()) std::cerr << "edgeslam: " << files.samples << " is not used; --imu uses it\n";
     return {};
   }
-  std::vector<InertialSample> samples;
   if (const Recording* recording = source.recording()) {
-    samples = recordedInertia(*recording, use.is_live);
-  } else if (configured.has_unit) {
-    samples = readInertialSamples(files);
-  } else {
-    InertialRecording beside = readInertialRecording(files);
-    configured.unit = beside.unit;
-    configured.has_unit = true;
-    samples = std::move(beside.samples);
+    const std::vector<InertiaGiven>& given = recording->decisions.inertia;
+    if (use.imu && given.empty()) throw InputError(recording->folder + ": the run was recorded without inertial data");
+    return recorded(*recording, given, &InertiaGiven::sample, use.is_live);
   }
-  configuration.settings = settingsWithInertia(configuration);
-  return samples;
+  if (configured.has_unit) return readInertialSamples(files);
+  InertialRecording beside = readInertialRecording(files);
+  configured.unit = beside.unit;
+  configured.has_unit = true;
+  return std::move(beside.samples);
 }
 
-std::vector<OdometryPose> wheelsBeside(const FrameSource& source, const MeasuredUse& use, bool with_inertia,
+// What is merely configured is used where it is there.
+std::vector<OdometryPose> wheelsBeside(const FrameSource& source, const MeasuredUse& use,
                                        Configuration& configuration) {
+  bool& is_used = configuration.settings.wheels.enabled;
   const std::string path = source.wheelOdometryPath();
-  const bool asked = use.wheels || configuration.settings.wheels.enabled;
-  if (!asked || (!use.wheels && (with_inertia || use.is_live || path.empty()))) {
+  const Recording* recording = source.recording();
+  const bool is_there = recording || !path.empty();
+  is_used = use.wheels || (is_used && is_there);
+  if (!is_used) {
     if (!path.empty()) std::cerr << "edgeslam: " << path << " is not used; --wheels uses it\n";
     return {};
   }
+  if (recording) {
+    const std::vector<WheelsGiven>& given = recording->decisions.wheels;
+    if (use.wheels && given.empty()) {
+      throw InputError(recording->folder + ": the run was recorded without wheel odometry");
+    }
+    return recorded(*recording, given, &WheelsGiven::pose, use.is_live);
+  }
   if (path.empty()) throw InputError("--wheels: no wheel_odometry.txt lies beside the frames");
-  useWheels({configuration.body_T_camera, configuration.settings.wheels.planar}, configuration.settings);
   return readWheelOdometry(path);
 }
 
 }  // namespace
 
 MeasuredBeside measuredBeside(const FrameSource& source, const MeasuredUse& use, Configuration& configuration) {
-  if (use.wheels && use.is_live) {
-    throw InputError("--wheels: not with --realtime, where the wheels are not used yet");
-  }
-  if (use.wheels && (use.imu || configuration.inertia.is_used)) {
-    throw InputError("--wheels: not together with --imu (imu.enabled) yet; each of them tells metres by itself");
-  }
   MeasuredBeside measured;
   measured.inertia = inertiaBeside(source, use, configuration);
-  measured.wheels = wheelsBeside(source, use, configuration.inertia.is_used, configuration);
+  measured.wheels = wheelsBeside(source, use, configuration);
+  configuration.settings = settingsWithSensors(configuration);
   return measured;
 }
 

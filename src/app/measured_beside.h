@@ -22,9 +22,9 @@ struct MeasuredUse {
   bool is_live = false;
 };
 
-// With the settings to use it; empty where it is not to be used, which is told where it is there. A recording's inertia
-// is among the decisions that are repeated. Throws InputError where what is asked for is not there, or does not go
-// together.
+// With the settings to use it; empty where it is not to be used, which is told where it is there. What was measured of
+// a recording is among the decisions that are repeated. Throws InputError where what is asked for is not there, or does
+// not go together.
 MeasuredBeside measuredBeside(const FrameSource& source, const MeasuredUse& use, Configuration& configuration);
 
 }  // namespace edgeslam

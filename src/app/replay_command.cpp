@@ -21,13 +21,12 @@
 #include "configuration/input_configuration.h"
 #include "files/format_text.h"
 #include "frames/frame_problem.h"
-#include "frames/inertial_feed.h"
-#include "frames/wheel_feed.h"
 #include "map/saved_map.h"
 #include "pipeline/lockstep_run.h"
 #include "recording/open_frame_source.h"
 #include "recording/recording_source.h"
 #include "report/run_files.h"
+#include "samples/sample_feed.h"
 #include "service/live_replay.h"
 #include "service/run_publisher.h"
 #include "wheels/utime.h"
@@ -90,8 +89,8 @@ void requireReadoutWithin(const Camera& camera, double frame_interval_s) {
 
 void processAll(FrameSource& source, const Camera& camera, const MeasuredBeside& measured, const Settings& settings,
                 LockstepRun& run) {
-  InertialFeed inertia(measured.inertia, settings.tracking.inertia ? settings.tracking.inertia->offset_ns : 0);
-  WheelFeed wheels(measured.wheels);
+  SampleFeed inertia(measured.inertia, settings.tracking.inertia ? settings.tracking.inertia->offset_ns : 0);
+  SampleFeed wheels(measured.wheels);
   ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
@@ -145,9 +144,10 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
 }
 
 Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Configuration& configuration,
-                          std::vector<InertialSample> inertia, const ReplayArguments& arguments) {
+                          MeasuredBeside measured, const ReplayArguments& arguments) {
   LiveReplay replay;
-  replay.inertia = std::move(inertia);
+  replay.inertia = std::move(measured.inertia);
+  replay.wheels = std::move(measured.wheels);
   const std::string map = mapToGoOnWith(arguments, source, configuration.settings);
   if (!map.empty()) replay.map_in = loadMap(map, camera);
   replay.record_folder = arguments.record;
@@ -218,7 +218,7 @@ int runReplay(const ReplayArguments& arguments) {
   if (!arguments.map_out.empty()) requireMapCanBeSaved(arguments.map_out);
   const auto start = std::chrono::steady_clock::now();
   Replayed replayed = arguments.realtime
-                          ? replayInRealTime(*source, camera, configuration, measured.inertia, arguments)
+                          ? replayInRealTime(*source, camera, configuration, measured, arguments)
                           : replayInLockstep(*source, camera, configuration.settings, measured, arguments);
   RunResult& result = replayed.result;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

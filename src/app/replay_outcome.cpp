@@ -54,7 +54,8 @@ void tellInertia(const RunResult& result) {
   if (known != result.inertia.end()) {
     std::printf("lengths are metres (+- %.1f %%), and z is up, by inertia\n", 100 * known->second.scale_sigma);
   } else if (!result.lacking_for_inertia.empty()) {
-    std::printf("lengths are map units: %s\n", result.lacking_for_inertia.c_str());
+    const bool is_metric = result.wheels.count(result.main_world) > 0;
+    std::printf("%s: %s\n", is_metric ? "z is not up" : "lengths are map units", result.lacking_for_inertia.c_str());
   }
 }
 

@@ -56,7 +56,7 @@ DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
   if (!arguments.configuration.empty()) setup.configuration = readConfiguration(arguments.configuration);
   const ServiceOptions& service = setup.configuration.service;
   setup.camera = cameraOf(arguments, setup.configuration);
-  setup.configuration.settings = settingsWithInertia(setup.configuration);
+  setup.configuration.settings = settingsWithSensors(setup.configuration);
   setup.camera = withReadoutOfUnit(setup.camera, setup.configuration);
   setup.capture = setup.configuration.capture;
   if (!arguments.source.empty()) {
@@ -67,8 +67,10 @@ DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
     setup.capture.width = setup.camera.width;
     setup.capture.height = setup.camera.height;
   }
-  if (setup.configuration.settings.wheels.enabled) {
-    log.tell("wheels.enabled: not used by edgeslam run yet; scale.source: odometry has its metres from the wheels");
+  if (setup.configuration.settings.wheels.enabled && service.scale.odometry.channel.empty()) {
+    throw InputError(
+        setup.configuration.source +
+        ": wheels.enabled: it is not known where the wheels' poses come from; give scale.odometry_channel");
   }
   setup.record_folder = arguments.record;
   const bool is_frozen = setup.configuration.settings.tracking.map_is_frozen;

@@ -213,8 +213,9 @@ Camera withReadoutOfUnit(Camera camera, const Configuration& configuration) {
   return camera;
 }
 
-Settings settingsWithInertia(const Configuration& configuration) {
+Settings settingsWithSensors(const Configuration& configuration) {
   Settings settings = configuration.settings;
+  if (settings.wheels.enabled) useWheels({configuration.body_T_camera, settings.wheels.planar}, settings);
   if (!configuration.inertia.is_used) return settings;
   if (!configuration.inertia.has_unit) {
     throw InputError(configuration.source +

@@ -67,8 +67,9 @@ Camera asConfigured(Camera camera, const Configuration& configuration);
 // none.
 Camera withReadoutOfUnit(Camera camera, const Configuration& configuration);
 
-// The settings with the inertial unit, where it is to be used. Throws InputError where it is not known where it sits.
-Settings settingsWithInertia(const Configuration& configuration);
+// The settings with the inertial unit and the wheels, where these are to be used. Throws InputError where it is not
+// known where the unit sits.
+Settings settingsWithSensors(const Configuration& configuration);
 
 // An empty file gives the defaults; an included file is read first. Throws InputError `FILE:LINE: KEY: ...` at the
 // first problem.

@@ -203,9 +203,11 @@ Keys serviceKeys(ServiceOptions& service, Settings& settings) {
        "of the saved map that the run continues; 0: not known"},
       {"scale.sigma", &scale.sigma, "", 0, 1, "standard deviation of that, as a share of it"},
 
-      heading("wheels", "The wheels' odometry as a motion (docs/method.md): of `edgeslam replay` alone so far"),
+      heading("wheels",
+              "The robot's wheels as a motion: metres, and poses where the camera sees nothing (docs/wheels.md)"),
       {"wheels.enabled", &settings.wheels.enabled, "", 0, 0,
-       "used where it lies beside recorded frames (wheel_odometry.txt), as with --wheels"},
+       "their odometry is used: of live runs from LCM (scale.odometry_channel), of recorded frames where it lies "
+       "beside\nthem"},
       {"wheels.planar", &settings.wheels.planar, "", 0, 0,
        "the robot stays on a plane floor: it hardly tilts or rises"},
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "inertia/preintegration.h"
+#include "samples/sample_ring.h"
 
 namespace edgeslam {
 
@@ -28,18 +28,21 @@ class InertialHistory {
   // taken to last.
   std::optional<PreintegratedMotion> between(std::int64_t from_ns, std::int64_t to_ns, const InertialBias& bias) const;
 
+  // How the unit turned, from its frame at the first time to that at the second; none likewise. Takes little time over
+  // many seconds.
+  std::optional<Eigen::Quaterniond> turnBetween(std::int64_t from_ns, std::int64_t to_ns,
+                                                const InertialBias& bias) const;
+
   static constexpr double longest_gap_s = 0.06, longest_wait_s = 0.02;
   static constexpr std::size_t most_samples = 8192;  // two seconds of the fastest units
 
  private:
-  const InertialSample& at(std::size_t place) const { return samples_[(first_ + place) % most_samples]; }
-  std::size_t firstAfter(std::int64_t time_ns) const;
   InertialSample interpolated(std::size_t after, std::int64_t time_ns) const;
+  template <typename Step>
+  bool forEachStep(std::int64_t from_ns, std::int64_t to_ns, const Step& step) const;
 
   InertialUnit unit_;
-  std::vector<InertialSample> samples_;  // a ring
-  std::size_t first_ = 0, count_ = 0;
-  int older_in_a_row_ = 0;
+  SampleRing<InertialSample> samples_;
 };
 
 }  // namespace edgeslam

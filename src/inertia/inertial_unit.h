@@ -13,6 +13,8 @@ struct InertialSample {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // specific force, the unit's frame [m/s^2]: at rest 9.81 upwards
 };
 
+inline std::int64_t timeOf(const InertialSample& sample) { return sample.time_ns; }
+
 // What is to be taken off what is measured.
 struct InertialBias {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();   // [rad/s]

@@ -1,11 +1,13 @@
 #include "library/conversion.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "frames/calibration_file.h"
 #include "inertia/inertial_history.h"
 #include "map/saved_map.h"
 #include "pipeline/map_records.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 namespace {
@@ -41,7 +43,7 @@ Configuration libraryConfiguration(const std::string& calibration_file, const st
   if (!calibration_file.empty()) configuration.camera = readCalibration(calibration_file);
   if (configuration.camera) {
     configuration.camera = asConfigured(*configuration.camera, configuration);
-    configuration.settings = settingsWithInertia(configuration);
+    configuration.settings = settingsWithSensors(configuration);
     configuration.camera = withReadoutOfUnit(*configuration.camera, configuration);
     return configuration;
   }
@@ -79,6 +81,17 @@ InertialSample checkedSample(const InertialMeasurement& measurement) {
                    " ns: expected finite numbers that a unit can measure, in rad/s and m/s^2");
 }
 
+OdometryPose checkedPose(const WheelMeasurement& measurement) {
+  constexpr double largest_norm_error = 0.01;
+  const auto& [w, x, y, z] = measurement.orientation;
+  const Eigen::Quaterniond turn(w, x, y, z);
+  const OdometryPose pose{utimeOf(measurement.time_ns),
+                          {turn.normalized(), Eigen::Map<const Eigen::Vector3d>(measurement.position.data())}};
+  if (std::abs(turn.norm() - 1) <= largest_norm_error && isUsable(pose)) return pose;
+  throw InputError("wheel measurement of " + std::to_string(measurement.time_ns) +
+                   " ns: expected a finite position in metres and a unit quaternion");
+}
+
 CameraPose publicPose(const Pose& world_T_camera) {
   const Eigen::Vector3d& t = world_T_camera.translation;
   const Eigen::Quaterniond& q = world_T_camera.rotation;
@@ -111,6 +124,10 @@ PosedFrame publicFrame(const FrameResult& result, const std::optional<OdometryFr
     frame.metres_per_unit = result.inertia->metres_a_unit;
     frame.scale_sigma = result.inertia->scale_sigma;
     Eigen::Map<Eigen::Vector3d>(frame.down.data()) = result.inertia->gravity.normalized();
+  } else if (result.wheels.is_known) {
+    frame.is_metric = true;
+    frame.metres_per_unit = result.wheels.metres_a_unit;
+    frame.scale_sigma = result.wheels.sigma;
   }
   frame.tracked_points = result.tracked_points;
   frame.mapped_points = result.mapped_points;

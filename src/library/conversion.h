@@ -12,6 +12,7 @@
 #include "map/map.h"
 #include "tracking/frame_result.h"
 #include "visual_odometry/odometry_frame.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 
@@ -25,6 +26,9 @@ void requireLater(std::int64_t time_ns, std::int64_t last_time_ns);
 
 // Throws InputError where no unit can have measured it.
 InertialSample checkedSample(const InertialMeasurement& measurement);
+
+// Throws InputError where wheels cannot say it.
+OdometryPose checkedPose(const WheelMeasurement& measurement);
 
 CameraPose publicPose(const Pose& world_T_camera);
 int publicWorld(int world);  // of a pose

@@ -82,6 +82,8 @@ void LiveSlam::handOver(const GreyImage& image, std::int64_t time_ns) {
 
 void LiveSlam::add(const InertialMeasurement& measurement) { work_->run.add(checkedSample(measurement)); }
 
+void LiveSlam::add(const WheelMeasurement& measurement) { work_->run.add(checkedPose(measurement)); }
+
 LiveCounters LiveSlam::counters() const {
   const LiveCounts counts = work_->run.counts();
   return {counts.captured, counts.processed, counts.passed_over, counts.keyframes, counts.points};

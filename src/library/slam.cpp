@@ -57,6 +57,8 @@ void Slam::goOnWith(const std::string& map_file) {
 
 void Slam::add(const InertialMeasurement& measurement) { work_->run.add(checkedSample(measurement)); }
 
+void Slam::add(const WheelMeasurement& measurement) { work_->run.add(checkedPose(measurement)); }
+
 PosedFrame Slam::process(const GreyImage& image, std::int64_t time_ns) {
   work_->requireOpen();
   const cv::Mat grey = checkedImage(image, work_->camera, time_ns, work_->last_time_ns);

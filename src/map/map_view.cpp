@@ -20,6 +20,7 @@ void makeFlatView(const TrackedFrame& first, MapView& view) {
   view.corrections = 0;
   view.initialised = false;
   view.inertia.reset();
+  view.wheels = {};
   view.keyframes.clear();
   view.points.clear();
   view.origin_frame = first.frame_index;

@@ -143,8 +143,8 @@ double visualSigma(const std::vector<Equation>& equations, const Solution& solut
   return ratios.empty() ? 0 : std::sqrt(upperMedian(std::move(ratios)));
 }
 
-// Gravity's length is free: where to begin.
-Solution solveFreely(const std::vector<Equation>& equations, double bias_prior) {
+// Gravity's length is free: where to begin. A scale that wheels know is held.
+Solution solveFreely(const std::vector<Equation>& equations, const WheelScale& wheels, double bias_prior) {
   using Vector7d = Eigen::Matrix<double, 7, 1>;
   using Matrix7 = Eigen::Matrix<double, 7, 7>;
   Matrix7 information = Matrix7::Zero();
@@ -157,6 +157,11 @@ Solution solveFreely(const std::vector<Equation>& equations, double bias_prior) 
   }
   const double count = static_cast<double>(equations.size());
   information.diagonal().tail<3>().array() += 1e-4 * count / squared(bias_prior);
+  if (wheels.is_known) {
+    const double held = 1e6 * information.diagonal().maxCoeff();
+    information(0, 0) += held;
+    right(0) += held * wheels.metres_a_unit;
+  }
   const Eigen::LDLT<Matrix7> factor(information);
   const Vector7d found = factor.solve(right);
   Solution solution;
@@ -169,7 +174,7 @@ Solution solveFreely(const std::vector<Equation>& equations, double bias_prior) 
 
 // Gravity as long as it is; Gauss and Newton's method on [scale; tilts of gravity [rad]; change of the bias].
 Solution solve(const std::vector<Equation>& equations, const Solution& start, const InertialAlignment& so_far,
-               double bias_prior) {
+               const WheelScale& wheels, double bias_prior) {
   Solution solution = start;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const double visual_sigma = visualSigma(equations, solution);
@@ -178,7 +183,11 @@ Solution solve(const std::vector<Equation>& equations, const Solution& start, co
     Vector6d gradient = Vector6d::Zero();
     information.diagonal().tail<3>().setConstant(1 / squared(bias_prior));
     gradient.tail<3>() = solution.bias_change / squared(bias_prior);
-    if (so_far.is_known) {
+    if (wheels.is_known) {
+      const double sigma = held_scale_sigma * wheels.metres_a_unit;
+      information(0, 0) = 1 / squared(sigma);
+      gradient(0) = (solution.scale - wheels.metres_a_unit) / squared(sigma);
+    } else if (so_far.is_known) {
       const double sigma = std::max(so_far.scale_sigma, least_scale_sigma) * so_far.metres_a_unit;
       information(0, 0) = 1 / squared(sigma);
       gradient(0) = (solution.scale - so_far.metres_a_unit) / squared(sigma);
@@ -219,7 +228,8 @@ InertialAlignment with(const Solution& solution, InertialAlignment alignment) {
 }  // namespace
 
 InertialAlignmentEstimate estimateInertialAlignment(const InertialUnit& unit, const InertialAlignmentOptions& options,
-                                                    const Map& map, int world, const InertialAlignment& so_far) {
+                                                    const Map& map, int world, const InertialAlignment& so_far,
+                                                    const WheelScale& wheels) {
   InertialAlignmentEstimate estimate{so_far, {}, ""};
   const std::vector<const Keyframe*> keyframes = latestKeyframes(map, world, options.most_keyframes);
   const double rate_prior = so_far.is_known ? bias_change_prior * rate_bias_prior : rate_bias_prior;
@@ -241,14 +251,15 @@ InertialAlignmentEstimate estimateInertialAlignment(const InertialUnit& unit, co
   }
   const double force_prior = so_far.is_known ? bias_change_prior * force_bias_prior : force_bias_prior;
   Solution solution{so_far.metres_a_unit, so_far.gravity, Eigen::Vector3d::Zero(), 0, 0, true};
-  if (!so_far.is_known) solution = solveFreely(equations, force_prior);
-  if (solution.is_determined) solution = solve(equations, solution, so_far, force_prior);
+  if (!so_far.is_known) solution = solveFreely(equations, wheels, force_prior);
+  if (solution.is_determined) solution = solve(equations, solution, so_far, wheels, force_prior);
   if (!solution.is_determined || !(solution.scale > 0) || !(solution.scale_sigma < options.largest_scale_sigma)) {
     estimate.lacking = speed_changes_too_little;
     if (solution.is_determined && solution.scale > 0) estimate.rough = with(solution, found);
     return estimate;
   }
   found = with(solution, found);
+  if (wheels.is_known) found.scale_sigma = wheels.sigma;
   found.is_known = true;
   return estimate;
 }

@@ -13,6 +13,9 @@ namespace edgeslam {
 // Why the scale is not known, where there are keyframes enough.
 constexpr const char* speed_changes_too_little = "inertia: the scale is not known yet; the speed must change more";
 
+// A scale that wheels know is held so well, as a share of it: they measure ways, where inertia has but their changes.
+constexpr double held_scale_sigma = 1e-3;
+
 struct InertialAlignmentOptions {
   double largest_scale_sigma = 0.05;  // the scale is known when its standard deviation is below this share of it
   int fewest_keyframes = 8;           // in a row, over ...
@@ -27,8 +30,10 @@ struct InertialAlignmentEstimate {
 };
 
 // Of a world. `so_far`: what was found earlier, from which scale and gravity are improved and the biases follow; the
-// gyroscope's bias is found before the others.
+// gyroscope's bias is found before the others. `wheels`: the scale by wheels beneath the camera, which
+// is held where these know it.
 InertialAlignmentEstimate estimateInertialAlignment(const InertialUnit& unit, const InertialAlignmentOptions& options,
-                                                    const Map& map, int world, const InertialAlignment& so_far);
+                                                    const Map& map, int world, const InertialAlignment& so_far,
+                                                    const WheelScale& wheels);
 
 }  // namespace edgeslam

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "map/worlds.h"
+#include "mapping/inertial_alignment_estimate.h"
 #include "mapping/inertial_terms.h"
 #include "mapping/line_bundle.h"
 #include "mapping/motion_along_lines.h"
@@ -106,6 +107,11 @@ const InertialAlignment* alignmentOf(const LocalAdjustmentOptions& options, cons
   return options.inertia && known != map.inertia.end() ? &known->second : nullptr;
 }
 
+WheelScale wheelScaleOf(const Map& map, int world) {
+  const auto known = map.wheels.find(world);
+  return known != map.wheels.end() ? known->second : WheelScale();
+}
+
 void readInertia(const BundleInertia& adjusted, const InertiaMatrix& covariance, InertialAlignment& alignment) {
   alignment.metres_a_unit = adjusted.metres_a_unit;
   alignment.gravity = adjusted.gravity;
@@ -191,20 +197,29 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   }
   const auto indexOf = [&](KeyframeId keyframe) { return camera_of[static_cast<std::size_t>(keyframe)]; };
   addMotionAlongLines(camera, map, lines.lines, indexOf, problem);
-  if (const InertialAlignment* known = alignmentOf(options, map, ordered_free.front())) {
-    addInertialTerms(*options.inertia, *known, options.inertia_is_free, map, ordered_free, cameraOf, problem);
+  const InertialAlignment* const alignment = alignmentOf(options, map, ordered_free.front());
+  if (alignment) {
+    addInertialTerms(*options.inertia, *alignment, options.inertia_is_free, map, ordered_free, cameraOf, problem);
   }
   if (options.wheels) {
-    const auto known = map.wheels.find(map.keyframes[ordered_free.front()].world);
-    addWheelTerms(*options.wheels, known != map.wheels.end() ? known->second : WheelScale(), map, ordered_free,
-                  cameraOf, problem);
+    const WheelScale scale = wheelScaleOf(map, map.keyframes[ordered_free.front()].world);
+    std::optional<GyroscopeBeside> gyroscope;
+    if (alignment) gyroscope = {options.inertia->imu_T_camera.rotation.conjugate(), alignment->bias};
+    addWheelTerms(*options.wheels, scale, gyroscope, map, ordered_free, cameraOf, problem);
     if (!problem.ways.empty()) problem.scale_camera = -1;  // the wheels hold the scale
+    if (scale.is_known) {
+      problem.inertia.told_metres_a_unit = scale.metres_a_unit;
+      problem.inertia.told_scale_sigma = held_scale_sigma;
+    }
   }
   const BundleResult result = adjustBundle(camera, problem, options.bundle, interrupted);
   if (cost) *cost = result.final_cost;
   if (!result.usable) return false;
   if (problem.inertia.is_free) {
-    readInertia(problem.inertia, result.inertia_covariance, map.inertia[map.keyframes[ordered_free.front()].world]);
+    const int world = map.keyframes[ordered_free.front()].world;
+    InertialAlignment& adjusted = map.inertia[world];
+    readInertia(problem.inertia, result.inertia_covariance, adjusted);
+    if (const WheelScale scale = wheelScaleOf(map, world); scale.is_known) adjusted.scale_sigma = scale.sigma;
   }
 
   for (std::size_t k = 0; k < problem.cameras.size(); ++k) {

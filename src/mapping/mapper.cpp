@@ -181,8 +181,10 @@ void Mapper::alignToEarth() {
   if (!options_.local_adjustment.inertia) return;
   InertialAlignment& alignment = map_.inertia[world_];
   const bool was_known = alignment.is_known;
-  const InertialAlignmentEstimate estimate = estimateInertialAlignment(
-      *options_.local_adjustment.inertia, options_.inertial_alignment, map_, world_, alignment);
+  const WheelScale* const wheels = knownWheelScale();
+  const InertialAlignmentEstimate estimate =
+      estimateInertialAlignment(*options_.local_adjustment.inertia, options_.inertial_alignment, map_, world_,
+                                alignment, wheels ? *wheels : WheelScale());
   lacking_ = estimate.lacking;
   if (was_known) {
     if (estimate.lacking.empty()) alignment = estimate.alignment;

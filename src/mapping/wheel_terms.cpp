@@ -27,6 +27,25 @@ Eigen::Matrix3d wayWhitening(const WheelMotion& motion) {
   return whiteningOf(turn * motion.covariance.topLeftCorner<3, 3>() * turn.transpose());
 }
 
+// Of turns by the wheels and by the gyroscope: of the wheels' standard deviations, and of the turn.
+constexpr double contradicting_turn = 5, contradicting_turn_share = 0.1;
+
+enum class TurnBeside { none, agrees, contradicts };
+
+// What the gyroscope says of the wheels' turn to a keyframe.
+TurnBeside turnBeside(const std::optional<GyroscopeBeside>& gyroscope, const WheelMotion& motion, const Keyframe& first,
+                      const Keyframe& keyframe) {
+  if (!gyroscope || keyframe.inertia.from != first.id) return TurnBeside::none;
+  const Eigen::Quaterniond& camera_R_imu = gyroscope->camera_R_imu;
+  const Eigen::Quaterniond turn =
+      (camera_R_imu * withBias(keyframe.inertia.motion, gyroscope->bias).rotation * camera_R_imu.conjugate())
+          .normalized();
+  const Eigen::Vector3d error = rotationLog((motion.first_T_second.rotation.conjugate() * turn).normalized());
+  const double allowed =
+      contradicting_turn + contradicting_turn_share * (turnWhitening(motion) * rotationLog(turn)).norm();
+  return (turnWhitening(motion) * error).norm() <= allowed ? TurnBeside::agrees : TurnBeside::contradicts;
+}
+
 }  // namespace
 
 std::optional<WheelMotion> motionToNext(const WheelOptions& options, const WheelScale& scale, const Keyframe& keyframe,
@@ -42,13 +61,12 @@ std::optional<WheelMotion> motionToNext(const WheelOptions& options, const Wheel
   return is_far && (wayWhitening(*motion) * way_error).norm() > slipped ? std::nullopt : motion;
 }
 
-void addWheelTerms(const WheelOptions& options, const WheelScale& scale, const Map& map,
-                   const std::vector<KeyframeId>& free, const std::function<int(KeyframeId)>& camera_of,
-                   BundleProblem& problem) {
+void addWheelTerms(const WheelOptions& options, const WheelScale& scale,
+                   const std::optional<GyroscopeBeside>& gyroscope, const Map& map, const std::vector<KeyframeId>& free,
+                   const std::function<int(KeyframeId)>& camera_of, BundleProblem& problem) {
   const auto isFree = [&](const Keyframe& keyframe) {
     return std::binary_search(free.begin(), free.end(), keyframe.id);
   };
-  problem.inertia.metres_a_unit = scale.metres_a_unit;
   const int world = map.keyframes[free.front()].world;
   const Keyframe* before = nullptr;
   for (const Keyframe& keyframe : map.keyframes) {
@@ -56,13 +74,15 @@ void addWheelTerms(const WheelOptions& options, const WheelScale& scale, const M
     const Keyframe* first = std::exchange(before, &keyframe);
     if (!first || !(isFree(*first) || isFree(keyframe))) continue;
     const std::optional<WheelMotion> motion = motionToNext(options, scale, *first, keyframe);
-    if (!motion) continue;
+    const TurnBeside beside = motion ? turnBeside(gyroscope, *motion, *first, keyframe) : TurnBeside::contradicts;
+    if (beside == TurnBeside::contradicts) continue;
+    const double claim_of_turn = beside == TurnBeside::agrees ? 1 : claim_of_points;
     const int first_camera = camera_of(first->id), second_camera = camera_of(keyframe.id);
     problem.turns.push_back({first_camera, second_camera, motion->first_T_second.rotation,
-                             claim_of_points * turnWhitening(*motion), huber_times});
+                             claim_of_turn * turnWhitening(*motion), huber_times});
     if (!scale.is_known) continue;
     problem.ways.push_back({first_camera, second_camera, motion->first_T_second.translation,
-                            claim_of_points * wayWhitening(*motion), huber_times});
+                            claim_of_points * wayWhitening(*motion), huber_times, scale.metres_a_unit});
   }
 }
 

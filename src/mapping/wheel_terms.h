@@ -17,10 +17,17 @@ namespace edgeslam {
 std::optional<WheelMotion> motionToNext(const WheelOptions& options, const WheelScale& scale, const Keyframe& keyframe,
                                         const Keyframe& next);
 
-// Adds what is known between neighbours of which one is free. Keyframes that are not in the problem yet, `camera_of`
-// adds, as fixed ones.
-void addWheelTerms(const WheelOptions& options, const WheelScale& scale, const Map& map,
-                   const std::vector<KeyframeId>& free, const std::function<int(KeyframeId)>& camera_of,
-                   BundleProblem& problem);
+// The inertial unit's gyroscope beside the wheels.
+struct GyroscopeBeside {
+  Eigen::Quaterniond camera_R_imu = Eigen::Quaterniond::Identity();
+  InertialBias bias;
+};
+
+// Adds what is known between neighbours of which one is free. Where a gyroscope tells the turn, too, the wheels' counts
+// less, and what turns otherwise has slipped: nothing of it counts. Keyframes that are not in the problem yet,
+// `camera_of` adds, as fixed ones.
+void addWheelTerms(const WheelOptions& options, const WheelScale& scale,
+                   const std::optional<GyroscopeBeside>& gyroscope, const Map& map, const std::vector<KeyframeId>& free,
+                   const std::function<int(KeyframeId)>& camera_of, BundleProblem& problem);
 
 }  // namespace edgeslam

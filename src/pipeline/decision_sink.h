@@ -8,6 +8,7 @@
 
 #include "inertia/inertial_unit.h"
 #include "map/keyframe.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 
@@ -18,6 +19,8 @@ class DecisionSink {
   virtual void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept = 0;
   // Before frame `frame_index` was processed, tracking was given what the inertial unit measured.
   virtual void measured(std::int64_t frame_index, const InertialSample& sample) noexcept = 0;
+  // Likewise, where the wheels say that the robot was.
+  virtual void measured(std::int64_t frame_index, const OdometryPose& pose) noexcept = 0;
   // Frame `frame_index` tells mapping nothing, mapping being far behind.
   virtual void mappingBusy(std::int64_t frame_index) noexcept = 0;
   // Before message `message` was handled, mapping applied correction `number`.

@@ -14,6 +14,7 @@
 #include "pipeline/semaphore.h"
 #include "pipeline/triple_buffer.h"
 #include "tracking/frame_result.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 
@@ -37,6 +38,7 @@ struct LiveChannels {
 
   FrameSlots frames;                                          // capture to tracking
   boost::lockfree::spsc_queue<InertialSample> inertia{4096};  // from outside to tracking: a second of the fastest units
+  boost::lockfree::spsc_queue<OdometryPose> wheels{1024};     // likewise
   Channel<MappingMessage> messages{64};                       // tracking to mapping
   TripleBuffer<MapUpdate> updates;                            // mapping to tracking
   boost::lockfree::spsc_queue<AppliedCorrection> applied{1024};  // mapping to tracking, for the sink

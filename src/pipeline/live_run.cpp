@@ -82,6 +82,10 @@ void LiveRun::add(const InertialSample& sample) {
   if (isUsable(sample)) channels_.inertia.push(sample);
 }
 
+void LiveRun::add(const OdometryPose& pose) {
+  if (isUsable(pose)) channels_.wheels.push(pose);
+}
+
 void LiveRun::stop(bool settle) {
   if (!publishing_thread_.joinable()) return;
   // No thread could be started for them.

@@ -52,6 +52,8 @@ class LiveRun {
   // What an inertial unit measured, in order, from one thread, which may be another than capture's. Never waits: what
   // is not usable (isUsable()), or comes while tracking is seconds behind, is left out.
   void add(const InertialSample& sample);
+  // Where the wheels say that the robot was, likewise.
+  void add(const OdometryPose& pose);
 
   // From any thread: the map as it is comes in a report, as soon as mapping is between two messages; without keyframes
   // where there is none yet.

@@ -33,7 +33,8 @@ void LiveTracking::track(FrameSlot& slot) {
   const Measured measured(durations_);
   tellPassedOver();
   takeUpdate(slot.index);
-  takeInertia(slot.index);
+  takeMeasured(channels_.inertia, slot.index);
+  takeMeasured(channels_.wheels, slot.index);
   const bool mapping_busy = isMappingBusy();
   if (mapping_busy) mapping_behind_.fetch_add(1, std::memory_order_relaxed);
   if (mapping_busy && sink_) sink_->mappingBusy(slot.index);
@@ -65,9 +66,10 @@ void LiveTracking::takeUpdate(std::int64_t frame_index) {
 }
 
 // All that has come: what comes later than its frame, the next one has.
-void LiveTracking::takeInertia(std::int64_t frame_index) {
-  InertialSample sample;
-  while (channels_.inertia.pop(sample)) {
+template <typename Waiting>
+void LiveTracking::takeMeasured(Waiting& waiting, std::int64_t frame_index) {
+  typename Waiting::value_type sample;
+  while (waiting.pop(sample)) {
     worker_.add(sample);
     if (sink_) sink_->measured(frame_index, sample);
   }

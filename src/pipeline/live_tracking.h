@@ -40,7 +40,8 @@ class LiveTracking {
   void track(FrameSlot& slot);
   void tellPassedOver();
   void takeUpdate(std::int64_t frame_index);
-  void takeInertia(std::int64_t frame_index);
+  template <typename Waiting>
+  void takeMeasured(Waiting& waiting, std::int64_t frame_index);
   bool isMappingBusy() const;
   void publish(const FrameSlot& slot, const FrameResult& result);
   void sendMessages();

@@ -45,7 +45,7 @@ void LockstepRun::goOnWith(Map map) {
 
 const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
   takeDueUpdate(index);
-  takeRecordedInertia(index);
+  takeRecorded(index);
   messages_.clear();
   const bool mapping_busy = recorded_ && recorded_->mapping_busy.count(index) > 0;
   latest_ = &tracking_.process(index, time_ns, grey, mapping_busy, messages_);
@@ -61,7 +61,7 @@ const FrameRecord& LockstepRun::process(std::int64_t index, std::int64_t time_ns
 
 const FrameRecord& LockstepRun::skip(std::int64_t index, std::int64_t time_ns, const std::string& problem) {
   takeDueUpdate(index);
-  takeRecordedInertia(index);
+  takeRecorded(index);
   ++processed_;
   latest_ = &tracking_.skip(index, time_ns, problem);
   return record_.add(*latest_, /*unreadable=*/true);
@@ -76,11 +76,16 @@ void LockstepRun::takeDueUpdate(std::int64_t frame_index) {
   if (newest) tracking_.take(*newest);
 }
 
-void LockstepRun::takeRecordedInertia(std::int64_t frame_index) {
+// What the live run had been given of its sensors.
+void LockstepRun::takeRecorded(std::int64_t frame_index) {
   if (!recorded_) return;
-  const auto measured = recorded_->inertia.find(frame_index);
-  if (measured == recorded_->inertia.end()) return;
-  for (const InertialSample& sample : measured->second) tracking_.add(sample);
+  const auto give = [&](const auto& measured) {
+    const auto found = measured.find(frame_index);
+    if (found == measured.end()) return;
+    for (const auto& sample : found->second) tracking_.add(sample);
+  };
+  give(recorded_->inertia);
+  give(recorded_->wheels);
 }
 
 bool LockstepRun::isDue(const DueUpdate& update, std::int64_t frame_index) const {

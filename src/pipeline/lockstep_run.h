@@ -53,7 +53,7 @@ class LockstepRun {
   };
 
   void takeDueUpdate(std::int64_t frame_index);
-  void takeRecordedInertia(std::int64_t frame_index);
+  void takeRecorded(std::int64_t frame_index);
   bool isDue(const DueUpdate& update, std::int64_t frame_index) const;
   void hand(MappingMessage& message);
   bool isWanted(const Snapshot& snapshot) const;

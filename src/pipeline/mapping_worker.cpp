@@ -74,8 +74,8 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
                                     known->metres_a_unit, 100 * known->scale_sigma));
   }
   tellOfCamera();
-  if (mapper_.lackingForInertia() != lacking_for_inertia_) {
-    report(last_frame_).lacking_for_inertia = lacking_for_inertia_ = mapper_.lackingForInertia();
+  if (const std::string lacking = lackingForMetres(); lacking != lacking_for_metres_) {
+    report(last_frame_).lacking_for_metres = lacking_for_metres_ = lacking;
   }
   if (mapper_.initialised()) {
     new_keyframe_ = true;
@@ -105,6 +105,12 @@ void MappingWorker::tellOfCamera() {
                                     "camera",
                                     mapper_.camera().fx));
   }
+}
+
+// Either will do; wheels know them sooner.
+std::string MappingWorker::lackingForMetres() const {
+  if (mapper_.knownAlignment() || mapper_.knownWheelScale()) return "";
+  return settings_.mapping.local_adjustment.wheels ? mapper_.lackingForWheels() : mapper_.lackingForInertia();
 }
 
 // The frame's pose is lost: recovery by its tracks (P21), then the map as a whole (P22).

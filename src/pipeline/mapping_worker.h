@@ -51,6 +51,7 @@ class MappingWorker {
                 std::vector<FoundAgain> points, const std::string& event);
   // `centre` -1: around where the camera was found, or around the latest keyframe.
   MapUpdate nextUpdate(KeyframeId centre = -1);
+  std::string lackingForMetres() const;
   MappingReport& report(std::int64_t frame_index);
 
   Settings settings_;
@@ -66,8 +67,8 @@ class MappingWorker {
   Pose found_reference_T_camera_;
   std::string not_found_;
   std::int64_t next_update_ = 0;
-  std::string lacking_for_inertia_;  // that was reported
-  bool camera_is_told_ = false;      // what was found of it
+  std::string lacking_for_metres_;  // that was reported
+  bool camera_is_told_ = false;     // what was found of it
   std::vector<MappingReport> reports_;
 };
 

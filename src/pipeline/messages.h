@@ -93,7 +93,9 @@ struct MappingReport {
   std::int64_t frame_index = 0;
   std::optional<Found> found;  // the frame was lost, and then it was not
   std::vector<std::string> events;
-  std::optional<std::string> lacking_for_inertia;  // where it changed: why metres are not known by it; empty: they are
+  // Where it changed: why the map's own metres, by inertia or the wheels, are not known; empty: they are, or neither is
+  // there.
+  std::optional<std::string> lacking_for_metres;
   std::vector<CulledKeyframe> culled;
   std::optional<ClosedLoop> loop;
   std::optional<WorldJoin> join;

@@ -38,7 +38,7 @@ struct RecordingSpace {
   double kept_free_megabytes = 256;
 };
 
-// Of the wheels' odometry beside recorded frames.
+// Of the wheels' odometry as a motion.
 struct WheelSettings {
   bool enabled = false;
   bool planar = false;

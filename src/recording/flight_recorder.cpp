@@ -10,6 +10,13 @@ RecordingLimits recordingLimits(const RecordingSpace& space) {
   return {bytesOf(space.most_megabytes), bytesOf(space.kept_free_megabytes)};
 }
 
+FlightRecorder::FlightRecorder(const std::string& folder, const RecordingDescription& description,
+                               const RecordingLimits& limits)
+    : folder_(folder), thread_(folder, description, limits) {
+  inertia_.kind = DecisionKind::inertia;
+  wheels_.kind = DecisionKind::wheels;
+}
+
 void FlightRecorder::mappingBusy(std::int64_t frame_index) noexcept {
   postNumbered(DecisionKind::busy, frame_index, 0);
 }
@@ -19,11 +26,20 @@ void FlightRecorder::tookUpdate(std::int64_t frame_index, std::int64_t number) n
 }
 
 void FlightRecorder::measured(std::int64_t frame_index, const InertialSample& sample) noexcept {
-  const auto count = static_cast<std::size_t>(measured_.number);
-  if (count == measured_.samples.size() || measured_.index != frame_index) postMeasured();
-  measured_.kind = DecisionKind::inertia;
-  measured_.index = frame_index;
-  measured_.samples[static_cast<std::size_t>(measured_.number++)] = sample;
+  keep(frame_index, sample, &RecordingEntry::samples, inertia_);
+}
+
+void FlightRecorder::measured(std::int64_t frame_index, const OdometryPose& pose) noexcept {
+  keep(frame_index, pose, &RecordingEntry::poses, wheels_);
+}
+
+template <typename Samples>
+void FlightRecorder::keep(std::int64_t frame_index, const typename Samples::value_type& sample,
+                          Samples RecordingEntry::*samples, RecordingEntry& waiting) noexcept {
+  const auto count = static_cast<std::size_t>(waiting.number);
+  if (count == (waiting.*samples).size() || waiting.index != frame_index) postMeasured(waiting);
+  waiting.index = frame_index;
+  (waiting.*samples)[static_cast<std::size_t>(waiting.number++)] = sample;
 }
 
 void FlightRecorder::appliedCorrection(std::int64_t message, std::int64_t number) noexcept {
@@ -59,14 +75,15 @@ RecordingStatus FlightRecorder::stop() {
 }
 
 // Before anything else is told.
-void FlightRecorder::postMeasured() noexcept {
-  if (measured_.number == 0) return;
-  hand(measured_);
-  measured_.number = 0;
+void FlightRecorder::postMeasured(RecordingEntry& waiting) noexcept {
+  if (waiting.number == 0) return;
+  hand(waiting);
+  waiting.number = 0;
 }
 
 void FlightRecorder::post(RecordingEntry entry) noexcept {
-  postMeasured();
+  postMeasured(inertia_);
+  postMeasured(wheels_);
   hand(std::move(entry));
 }
 

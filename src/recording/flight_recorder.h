@@ -15,12 +15,13 @@ RecordingLimits recordingLimits(const RecordingSpace& space);
 class FlightRecorder : public DecisionSink {
  public:
   // Throws InputError where the recording cannot be begun.
-  FlightRecorder(const std::string& folder, const RecordingDescription& description, const RecordingLimits& limits = {})
-      : folder_(folder), thread_(folder, description, limits) {}
+  FlightRecorder(const std::string& folder, const RecordingDescription& description,
+                 const RecordingLimits& limits = {});
 
   void mappingBusy(std::int64_t frame_index) noexcept override;
   void tookUpdate(std::int64_t frame_index, std::int64_t number) noexcept override;
   void measured(std::int64_t frame_index, const InertialSample& sample) noexcept override;
+  void measured(std::int64_t frame_index, const OdometryPose& pose) noexcept override;
   void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override;
   void passedOver(std::int64_t index, std::int64_t time_ns) noexcept override;
   void processed(const std::shared_ptr<const FrameImages>& images) noexcept override;
@@ -35,12 +36,15 @@ class FlightRecorder : public DecisionSink {
 
  private:
   void post(RecordingEntry entry) noexcept;
-  void postMeasured() noexcept;
+  void postMeasured(RecordingEntry& waiting) noexcept;
+  template <typename Samples>
+  void keep(std::int64_t frame_index, const typename Samples::value_type& sample, Samples RecordingEntry::*samples,
+            RecordingEntry& waiting) noexcept;
   void hand(RecordingEntry entry) noexcept;
   void postNumbered(DecisionKind kind, std::int64_t index, std::int64_t number) noexcept;
 
   const std::string folder_;
-  RecordingEntry measured_;  // what waits to go together
+  RecordingEntry inertia_, wheels_;  // what waits to go together
   std::atomic<bool> ended_{false}, posting_{false};
   RecordingThread thread_;
 };

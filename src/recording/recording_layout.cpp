@@ -10,6 +10,7 @@
 #include "files/format_text.h"
 #include "files/text_file.h"
 #include "inertia/inertial_history.h"
+#include "wheels/utime.h"
 
 namespace edgeslam {
 namespace {
@@ -28,7 +29,7 @@ struct LineForm {
   const char* expected;
 };
 
-constexpr std::array<LineForm, 10> line_forms{{
+constexpr std::array<LineForm, 11> line_forms{{
     {DecisionKind::frame, "frame", &Decision::index, &Decision::time_ns, false, "frame INDEX TIME_NS"},
     {DecisionKind::dropped, "dropped", &Decision::index, &Decision::time_ns, false, "dropped INDEX TIME_NS"},
     {DecisionKind::unreadable, "unreadable", &Decision::index, &Decision::time_ns, true,
@@ -36,6 +37,7 @@ constexpr std::array<LineForm, 10> line_forms{{
     {DecisionKind::update, "update", &Decision::index, &Decision::number, false, "update INDEX NUMBER"},
     {DecisionKind::inertia, "inertia", &Decision::index, &Decision::time_ns, true,
      "inertia INDEX TIME_NS RATE RATE RATE FORCE FORCE FORCE"},
+    {DecisionKind::wheels, "wheels", &Decision::index, &Decision::time_ns, true, "wheels INDEX TIME_NS X Y Z W X Y Z"},
     {DecisionKind::busy, "busy", &Decision::index, nullptr, false, "busy INDEX"},
     {DecisionKind::correction, "correction", &Decision::index, &Decision::number, false, "correction MESSAGE NUMBER"},
     {DecisionKind::gap, "gap", &Decision::number, nullptr, false, "gap COUNT"},
@@ -56,6 +58,20 @@ std::string checksum(std::string_view text) {
   return formatted("%08lx", static_cast<unsigned long>(value));
 }
 
+// None where the text is not just so many.
+template <std::size_t count>
+std::optional<std::array<double, count>> numbersOf(const std::string& text) {
+  const std::vector<std::string_view> columns = splitColumns(text);
+  if (columns.size() != count) return std::nullopt;
+  std::array<double, count> numbers{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::optional<double> number = parseNumber(columns[i]);
+    if (!number) return std::nullopt;
+    numbers[i] = *number;
+  }
+  return numbers;
+}
+
 // The text up to the next blank, which is taken off together with that blank.
 std::string_view takeWord(std::string_view& text) {
   const std::size_t blank = text.find(' ');
@@ -74,18 +90,26 @@ Decision inertiaDecision(std::int64_t frame_index, const InertialSample& sample)
 }
 
 std::optional<InertialSample> inertialSampleOf(const Decision& decision) {
-  const std::vector<std::string_view> columns = splitColumns(decision.text);
-  if (columns.size() != 6) return std::nullopt;
-  InertialSample sample;
-  sample.time_ns = decision.time_ns;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::optional<double> rate = parseNumber(columns[static_cast<std::size_t>(axis)]);
-    const std::optional<double> force = parseNumber(columns[static_cast<std::size_t>(axis) + 3]);
-    if (!rate || !force) return std::nullopt;
-    sample.rate[axis] = *rate;
-    sample.force[axis] = *force;
-  }
+  const std::optional<std::array<double, 6>> numbers = numbersOf<6>(decision.text);
+  if (!numbers) return std::nullopt;
+  const auto& [rate_x, rate_y, rate_z, force_x, force_y, force_z] = *numbers;
+  const InertialSample sample{decision.time_ns, {rate_x, rate_y, rate_z}, {force_x, force_y, force_z}};
   return isUsable(sample) ? std::optional(sample) : std::nullopt;
+}
+
+Decision wheelsDecision(std::int64_t frame_index, const OdometryPose& pose) {
+  const Eigen::Vector3d& t = pose.local_T_body.translation;
+  const Eigen::Quaterniond& q = pose.local_T_body.rotation;
+  return {DecisionKind::wheels, frame_index, timeOf(pose), 0,
+          formatted("%.17g %.17g %.17g %.17g %.17g %.17g %.17g", t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z())};
+}
+
+std::optional<OdometryPose> odometryPoseOf(const Decision& decision) {
+  const std::optional<std::array<double, 7>> numbers = numbersOf<7>(decision.text);
+  if (!numbers) return std::nullopt;
+  const auto& [x, y, z, turn_w, turn_x, turn_y, turn_z] = *numbers;
+  const OdometryPose pose{utimeOf(decision.time_ns), {{turn_w, turn_x, turn_y, turn_z}, {x, y, z}}};
+  return isUsable(pose) ? std::optional(pose) : std::nullopt;
 }
 
 std::string formatDecision(const Decision& decision) {
@@ -115,7 +139,8 @@ Decision parseDecision(std::string_view text, const std::string& place) {
                                         [&](const LineForm& candidate) { return candidate.word == word; });
   if (form == line_forms.end()) {
     throw InputError(
-        place + "expected frame, dropped, unreadable, update, inertia, busy, correction, gap, stopped or end, found '" +
+        place +
+        "expected frame, dropped, unreadable, update, inertia, wheels, busy, correction, gap, stopped or end, found '" +
         found + "'");
   }
   const auto wrongForm = [&] {
@@ -165,6 +190,10 @@ std::string DecisionOrder::add(const Decision& decision) {
     case DecisionKind::inertia:
       if (decision.index < inertia_index_) return goesBack("inertia's frame", decision.index, inertia_index_);
       inertia_index_ = decision.index;
+      break;
+    case DecisionKind::wheels:
+      if (decision.index < wheels_index_) return goesBack("the wheels' frame", decision.index, wheels_index_);
+      wheels_index_ = decision.index;
       break;
     case DecisionKind::busy:
       if (decision.index <= busy_index_) return goesBack("the busy frame", decision.index, busy_index_);

@@ -17,10 +17,11 @@
 
 #include "frames/tum_folder.h"
 #include "inertia/inertial_unit.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 
-constexpr int recording_format_version = 2;  // 1 is read, too: it has no inertia
+constexpr int recording_format_version = 2;  // 1 is read, too: it has neither inertia nor wheels
 constexpr const char* recording_description_name = "recording.txt";
 constexpr const char* recording_decisions_name = "decisions.txt";
 constexpr const char* recording_configuration_name = "edgeslam.yaml";
@@ -35,7 +36,9 @@ enum class DecisionKind {
   update,      // "update INDEX NUMBER": before processing frame INDEX, tracking took map update NUMBER
   inertia,     // "inertia INDEX TIME_NS RATE RATE RATE FORCE FORCE FORCE": before processing frame INDEX, tracking was
                // given what the inertial unit measured at TIME_NS of its clock [rad/s], [m/s^2]
-  busy,        // "busy INDEX": frame INDEX told mapping nothing, mapping being far behind
+  wheels,  // "wheels INDEX TIME_NS X Y Z W X Y Z": likewise, where the wheels said that the robot's body was [m], and
+           // how it was turned, a unit quaternion
+  busy,    // "busy INDEX": frame INDEX told mapping nothing, mapping being far behind
   correction,  // "correction MESSAGE NUMBER": before handling message MESSAGE, mapping applied correction NUMBER
   gap,         // "gap COUNT": here COUNT decisions or frames are missing, the run cannot be repeated from here on
   stopped,     // "stopped REASON": recording ended before the run did; the last line
@@ -45,15 +48,19 @@ enum class DecisionKind {
 struct Decision {
   DecisionKind kind = DecisionKind::frame;
   std::int64_t index = 0;    // of the frame, counted over all frames of the camera from 0; for a correction: MESSAGE
-  std::int64_t time_ns = 0;  // frame, dropped, unreadable, inertia
+  std::int64_t time_ns = 0;  // frame, dropped, unreadable, inertia, wheels
   std::int64_t number = 0;   // update and correction: NUMBER; gap: COUNT
-  std::string text;          // unreadable and stopped: why; inertia: the six numbers
+  std::string text;          // unreadable and stopped: why; inertia and wheels: the numbers
 };
 
 // Of kind `inertia`. The numbers have all their digits.
 Decision inertiaDecision(std::int64_t frame_index, const InertialSample& sample);
 // The other way; nothing where the text is not six numbers, or they are nothing that a unit measures (isUsable()).
 std::optional<InertialSample> inertialSampleOf(const Decision& decision);
+
+// Likewise of kind `wheels`.
+Decision wheelsDecision(std::int64_t frame_index, const OdometryPose& pose);
+std::optional<OdometryPose> odometryPoseOf(const Decision& decision);
 
 // The line with its line end. It ends in a blank and the CRC-32 (zlib's crc32, 8 hexadecimal digits) of what stands
 // before, so that a line that was torn by a power cut is known. Control characters of `text` become blanks, and what is
@@ -67,8 +74,8 @@ std::optional<std::string_view> undamagedDecision(std::string_view line);
 Decision parseDecision(std::string_view text, const std::string& place);
 
 // The order in which decisions can follow each other: INDEX grows over all frames, TIME_NS over those not dropped;
-// updates' and inertia's INDEX and corrections' MESSAGE never go back, their NUMBERs grow; nothing follows the last
-// line. All values are 0 to 4e18.
+// updates', inertia's and wheels' INDEX and corrections' MESSAGE never go back, their NUMBERs grow; nothing follows the
+// last line. All values are 0 to 4e18.
 class DecisionOrder {
  public:
   // Empty and remembers the decision, or says why it cannot come next.
@@ -78,7 +85,7 @@ class DecisionOrder {
   bool ended_ = false;
   std::int64_t index_ = -1, time_ns_ = -1;
   std::int64_t update_index_ = 0, update_number_ = -1;
-  std::int64_t inertia_index_ = 0;
+  std::int64_t inertia_index_ = 0, wheels_index_ = 0;
   std::int64_t busy_index_ = -1;
   std::int64_t correction_message_ = 0, correction_number_ = -1;
 };

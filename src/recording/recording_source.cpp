@@ -92,6 +92,10 @@ DecisionLines readDecisionLines(const std::string& path) {
       throw InputError(place + "expected six numbers that an inertial unit can have measured, found '" + decision.text +
                        "'");
     }
+    if (decision.kind == DecisionKind::wheels && !odometryPoseOf(decision)) {
+      throw InputError(place + "expected seven numbers, a position [m] and a unit quaternion, found '" + decision.text +
+                       "'");
+    }
     if (decision.kind == DecisionKind::stopped) lines.note = "recording stopped before the run did: " + decision.text;
     lines.ended = decision.kind == DecisionKind::end;
     lines.decisions.push_back(decision);
@@ -153,6 +157,9 @@ void take(const Decision& decision, Recording& recording) {
     case DecisionKind::inertia:
       decisions.inertia.push_back({decision.index, *inertialSampleOf(decision)});
       break;
+    case DecisionKind::wheels:
+      decisions.wheels.push_back({decision.index, *odometryPoseOf(decision)});
+      break;
     case DecisionKind::busy:
       decisions.busy.push_back(decision.index);
       break;
@@ -175,6 +182,7 @@ RunDecisions runDecisions(const Decisions& recorded) {
   RunDecisions decisions;
   for (const UpdateTaken& update : recorded.updates) decisions.updates[update.frame_index] = update.number;
   for (const InertiaGiven& given : recorded.inertia) decisions.inertia[given.frame_index].push_back(given.sample);
+  for (const WheelsGiven& given : recorded.wheels) decisions.wheels[given.frame_index].push_back(given.pose);
   decisions.mapping_busy.insert(recorded.busy.begin(), recorded.busy.end());
   for (const CorrectionApplied& correction : recorded.corrections) {
     decisions.corrections[correction.message].push_back(correction.number);

@@ -30,6 +30,12 @@ struct InertiaGiven {
   InertialSample sample;
 };
 
+// Likewise of the wheels.
+struct WheelsGiven {
+  std::int64_t frame_index = 0;
+  OdometryPose pose;
+};
+
 struct DroppedFrame {
   std::int64_t index = 0;
   std::int64_t time_ns = 0;
@@ -40,6 +46,7 @@ struct Decisions {
   std::vector<UpdateTaken> updates;
   std::vector<CorrectionApplied> corrections;
   std::vector<InertiaGiven> inertia;
+  std::vector<WheelsGiven> wheels;
   std::vector<DroppedFrame> dropped;
   std::vector<std::int64_t> busy;  // frames that told mapping nothing, mapping being far behind
   std::int64_t not_recorded = 0;   // frames and decisions; above 0, the recording does not repeat the run

@@ -123,6 +123,10 @@ void RecordingThread::write(const QueuedEntry& queued) {
     for (std::int64_t i = 0; i < entry.number; ++i) {
       writer_.writeDecision(inertiaDecision(entry.index, entry.samples[static_cast<std::size_t>(i)]));
     }
+  } else if (entry.kind == DecisionKind::wheels) {
+    for (std::int64_t i = 0; i < entry.number; ++i) {
+      writer_.writeDecision(wheelsDecision(entry.index, entry.poses[static_cast<std::size_t>(i)]));
+    }
   } else {
     writer_.writeDecision({entry.kind, entry.index, entry.time_ns, entry.number, entry.reason.data()});
   }

@@ -15,6 +15,7 @@
 #include "inertia/inertial_unit.h"
 #include "map/keyframe.h"
 #include "recording/recording_writer.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 
@@ -27,6 +28,7 @@ struct RecordingEntry {
   std::int64_t number = 0;
   std::array<char, 160> reason{};            // of an unreadable frame: up to the first zero
   std::array<InertialSample, 16> samples{};  // of kind `inertia`: the first `number` of them
+  std::array<OdometryPose, 8> poses{};       // likewise of kind `wheels`
 };
 
 // Cuts off what does not fit.

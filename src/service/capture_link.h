@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -26,10 +27,10 @@ class CaptureLink {
     const std::lock_guard<std::mutex> lock(mutex_);
     camera_problem_ = problem;
   }
-  // What is wrong with what the inertial unit gives; empty where nothing is.
-  void setInertiaProblem(const std::string& problem) {
+  // What is wrong with what the sensor of that name gives; empty where nothing is.
+  void setSensorProblem(const std::string& sensor, const std::string& problem) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    inertia_problem_ = problem;
+    sensor_problems_[sensor] = problem;
   }
   // There is no frame to be had at present, and capture is not stuck.
   void waited() { waits_.fetch_add(1, std::memory_order_relaxed); }
@@ -54,9 +55,13 @@ class CaptureLink {
     const std::lock_guard<std::mutex> lock(mutex_);
     return camera_problem_;
   }
-  std::string inertiaProblem() const {
+  // Of the first sensor that has one; or empty.
+  std::string sensorProblem() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return inertia_problem_;
+    for (const auto& [sensor, problem] : sensor_problems_) {
+      if (!problem.empty()) return problem;
+    }
+    return "";
   }
   std::int64_t waits() const { return waits_.load(std::memory_order_relaxed); }
   std::int64_t lost() const { return lost_.load(std::memory_order_relaxed); }
@@ -82,7 +87,8 @@ class CaptureLink {
 
  private:
   mutable std::mutex mutex_;
-  std::string camera_problem_, inertia_problem_;
+  std::string camera_problem_;
+  std::map<std::string, std::string> sensor_problems_;
   std::optional<Command> request_;
   std::optional<Command> underway_;  // requested and not answered yet
   std::vector<Answer> answers_;

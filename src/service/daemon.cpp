@@ -21,7 +21,7 @@ Daemon::Daemon(DaemonSetup setup, EventLog& log)
   page_ = std::make_unique<DaemonPage>(setup_, camera_->stream().camera, signals_, log_);
   publisher_ = std::make_unique<RunPublisher>(publishingSetup(setup_, page_->viewer()), link_, log_);
   intake_ = std::make_unique<FrameIntake>(*camera_, link_, log_);
-  openInertia();
+  openSensors();
   map_ = std::move(setup_.map_in);
   if (map_) start_ = RunStart::saved_map;
   beginRecording();
@@ -37,15 +37,31 @@ void Daemon::openCamera() {
   log_.tell(problem.empty() ? "camera: " + stream.camera + ", " + stream.format : "waiting for the camera: " + problem);
 }
 
-void Daemon::openInertia() {
+void Daemon::openSensors() {
   const InertiaConfiguration& inertia = setup_.configuration.inertia;
-  if (!inertia.is_used) return;
   if (ImuReceiver* receiver = publisher_->imu()) {
-    inertia_ = std::make_unique<InertiaIntake>(*receiver, inertia.unit.offset_ns, link_, log_);
-  } else {
-    log_.tell("runs on the camera alone: what the inertial unit measures cannot be received over " +
-              effectiveUrl(setup_.configuration.service.lcm));
+    inertia_.emplace(SensorName{"inertial unit", "nothing that a unit measures"}, *receiver,
+                     InertialWatch(inertia.unit.offset_ns), link_, log_);
+  } else if (inertia.is_used) {
+    tellUnheard("the inertial unit measures");
   }
+  if (OdometryReceiver* receiver = publisher_->wheels()) {
+    if (!setup_.configuration.settings.wheels.enabled) return;  // they are for the scale
+    wheels_.emplace(SensorName{"wheels", "no pose of a body"}, *receiver, WheelWatch(), link_, log_);
+  } else if (setup_.configuration.settings.wheels.enabled) {
+    tellUnheard("the wheels say");
+  }
+}
+
+void Daemon::tellUnheard(const char* what) {
+  log_.tell(std::string("runs on without what ") + what + ", which cannot be received over " +
+            effectiveUrl(setup_.configuration.service.lcm));
+}
+
+// Before the frame that follows them.
+void Daemon::takeSensors(const Capture& captured, LiveRun& run) {
+  if (inertia_) inertia_->take(captured, run);
+  if (wheels_) wheels_->take(captured, run);
 }
 
 // From the start of the run to come.
@@ -119,7 +135,7 @@ Daemon::RunEnd Daemon::capture(LiveRun& run) {
       log_.tell(camera_->stream().camera + ": at its end");
       return {std::nullopt, true};
     }
-    if (inertia_) inertia_->take(captured, run);
+    takeSensors(captured, run);
     intake_->take(captured, run);
     if (captured.event == CaptureEvent::frame && !std::exchange(readout_told_, true)) tellReadout();
   }

@@ -6,15 +6,19 @@
 #include <optional>
 
 #include "drivers/frame_capture/reopening_camera.h"
+#include "drivers/lcm/imu_message.h"
+#include "drivers/lcm/odometry.h"
+#include "inertia/inertial_watch.h"
 #include "service/capture_link.h"
 #include "service/daemon_page.h"
 #include "service/daemon_setup.h"
 #include "service/daemon_signals.h"
 #include "service/event_log.h"
 #include "service/frame_intake.h"
-#include "service/inertia_intake.h"
 #include "service/next_recording.h"
 #include "service/run_publisher.h"
+#include "service/sensor_intake.h"
+#include "wheels/wheel_watch.h"
 
 namespace edgeslam {
 
@@ -36,7 +40,9 @@ class Daemon {
   };
 
   void openCamera();
-  void openInertia();
+  void openSensors();
+  void tellUnheard(const char* what);
+  void takeSensors(const Capture& captured, LiveRun& run);
   void beginRecording();
   void oneRun();
   void tellProcessorProblems(const LiveRun& run);
@@ -54,7 +60,8 @@ class Daemon {
   std::unique_ptr<DaemonPage> page_;
   std::unique_ptr<RunPublisher> publisher_;
   std::unique_ptr<FrameIntake> intake_;
-  std::unique_ptr<InertiaIntake> inertia_;  // null: there is no unit
+  std::optional<SensorIntake<ImuReceiver, InertialWatch>> inertia_;  // none: there is no unit
+  std::optional<SensorIntake<OdometryReceiver, WheelWatch>> wheels_;
 
   RunStart start_ = RunStart::new_map;
   std::optional<Map> map_;  // that the run to come continues

@@ -26,6 +26,9 @@ PublishingSetup publishingSetup(const DaemonSetup& setup, Viewer* viewer) {
   publishing.map_file = setup.map_out;
   publishing.begins_anew = true;
   if (setup.configuration.inertia.is_used) publishing.lcm.imu_channel = setup.configuration.inertia.channel;
+  if (setup.configuration.settings.wheels.enabled) {
+    publishing.lcm.wheels_channel = setup.configuration.service.scale.odometry.channel;
+  }
   return publishing;
 }
 

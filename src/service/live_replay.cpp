@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "frames/frame_problem.h"
-#include "frames/inertial_feed.h"
 #include "map/saved_map.h"
 #include "pipeline/live_run.h"
 #include "pipeline/run_record.h"
 #include "recording/flight_recorder.h"
 #include "recording/recording_layout.h"
+#include "samples/sample_feed.h"
 #include "service/failure_message.h"
 #include "service/run_publisher.h"
 
@@ -43,7 +43,10 @@ void keepMap(const Map& map, const Camera& camera, const std::string& folder) {
 }
 
 // Each frame at its time, and before it what was measured until then.
-void feed(FrameSource& source, const Camera& camera, double pace, InertialFeed& inertia, LiveRun& run) {
+void feed(FrameSource& source, const Camera& camera, const LiveReplay& replay, std::int64_t imu_offset_ns,
+          LiveRun& run) {
+  SampleFeed inertia(replay.inertia, imu_offset_ns);
+  SampleFeed wheels(replay.wheels);
   std::optional<Clock::time_point> start;
   std::int64_t first_ns = 0;
   while (std::optional<Frame> frame = source.next()) {
@@ -56,9 +59,10 @@ void feed(FrameSource& source, const Camera& camera, double pace, InertialFeed& 
     slot.time_ns = frame->time_ns;
     slot.problem = frameProblem(*frame, camera);
     if (slot.problem.empty()) frame->grey.copyTo(slot.grey);
-    const auto since_start = static_cast<std::int64_t>(static_cast<double>(frame->time_ns - first_ns) / pace);
+    const auto since_start = static_cast<std::int64_t>(static_cast<double>(frame->time_ns - first_ns) / replay.pace);
     std::this_thread::sleep_until(*start + std::chrono::nanoseconds(since_start));
     inertia.giveUntil(frame->time_ns, [&](const InertialSample& sample) { run.add(sample); });
+    wheels.giveUntil(frame->time_ns, [&](const OdometryPose& pose) { run.add(pose); });
     run.handOver();
   }
 }
@@ -101,8 +105,7 @@ LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Set
   }
   tell(problems);
   const std::optional<InertialUnit>& unit = settings.tracking.inertia;
-  InertialFeed inertia(replay.inertia, unit ? unit->offset_ns : 0);
-  feed(source, camera, replay.pace, inertia, run);
+  feed(source, camera, replay, unit ? unit->offset_ns : 0, run);
   setUpThread({"edgeslam", 0, 0, false, {}});
   run.stop(/*settle=*/true);
   if (replay.publisher) replay.publisher->end(/*is_last=*/true);

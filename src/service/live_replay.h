@@ -13,6 +13,7 @@
 #include "pipeline/settings.h"
 #include "recording/recording_writer.h"
 #include "tracking/frame_result.h"
+#include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 
@@ -20,11 +21,13 @@ class RunPublisher;
 
 struct LiveReplay {
   std::optional<Map> map_in;
-  std::vector<InertialSample> inertia;  // what was measured beside the frames; times ascend
-  double pace = 1;                      // frames come so many times as fast as their time stamps say
-  std::string record_folder;            // empty: not recorded
-  RecordingDescription description;     // of the recording
-  RunPublisher* publisher = nullptr;    // null: nothing is published
+  // What was measured beside the frames; times ascend.
+  std::vector<InertialSample> inertia;
+  std::vector<OdometryPose> wheels;
+  double pace = 1;                    // frames come so many times as fast as their time stamps say
+  std::string record_folder;          // empty: not recorded
+  RecordingDescription description;   // of the recording
+  RunPublisher* publisher = nullptr;  // null: nothing is published
   // Called for each frame, in order, by another thread.
   std::function<void(const FrameResult&, const std::string& problem)> progress;
 };

@@ -57,7 +57,7 @@ void MetricScale::noMap() {
 
 void MetricScale::beforeFrame(const FrameResult& result) {
   enterWorld(result);
-  takeInertia(result);
+  takeFromMap(result);
 }
 
 // A map that begins under a number known from before is another one.
@@ -77,25 +77,39 @@ void MetricScale::enterWorld(const FrameResult& result) {
   publisher_.setDown(here().down);
 }
 
-// The first time at once, with where up is: what is published changes once. Up stays then, but where it was wrong.
-void MetricScale::takeInertia(const FrameResult& result) {
-  if (!result.inertia || !result.inertia->is_known || worldOf(result) != world_) return;
-  WorldScale& world = here();
-  world.inertia = result.inertia;
-  const Eigen::Vector3d down = result.inertia->gravity.normalized();
-  if (!world.down || std::acos(std::min(1.0, down.dot(*world.down))) > largest_tilt) {
-    world.down = down;
-    publisher_.setDown(down);
+std::optional<MetricScale::MapScale> MetricScale::mapScale(const FrameResult& result) {
+  if (result.inertia && result.inertia->is_known) {
+    return MapScale{ScaleKind::inertia, result.inertia->metres_a_unit, result.inertia->scale_sigma};
   }
-  if (world.by_inertia.scale().kind == ScaleKind::unknown) followInertia();
+  if (!result.wheels.is_known) return std::nullopt;
+  return MapScale{ScaleKind::odometry, result.wheels.metres_a_unit, result.wheels.sigma};
+}
+
+// The first time at once, with where up is: what is published changes once.
+void MetricScale::takeFromMap(const FrameResult& result) {
+  const std::optional<MapScale> told = mapScale(result);
+  if (!told || worldOf(result) != world_) return;
+  WorldScale& world = here();
+  world.map = told;
+  if (result.inertia && result.inertia->is_known) takeDown(*result.inertia);
+  if (world.by_map.scale().kind == ScaleKind::unknown) followMap();
+}
+
+// Up stays, but where it was wrong.
+void MetricScale::takeDown(const InertialAlignment& inertia) {
+  WorldScale& world = here();
+  const Eigen::Vector3d down = inertia.gravity.normalized();
+  if (world.down && std::acos(std::min(1.0, down.dot(*world.down))) <= largest_tilt) return;
+  world.down = down;
+  publisher_.setDown(down);
 }
 
 // What was set by command, or came with a saved map, stays.
-void MetricScale::followInertia() {
+void MetricScale::followMap() {
   WorldScale& world = here();
-  if (!world.inertia) return;
-  world.by_inertia.follow({std::log(world.inertia->metres_a_unit), world.inertia->scale_sigma, ""}, ScaleKind::inertia);
-  if (world.scale.kind != ScaleKind::known_distance) take(world.by_inertia.scale());
+  if (!world.map) return;
+  world.by_map.follow({std::log(world.map->metres_a_unit), world.map->sigma, ""}, world.map->kind);
+  if (world.scale.kind != ScaleKind::known_distance) take(world.by_map.scale());
 }
 
 // A saved map is the first world.
@@ -121,6 +135,7 @@ void MetricScale::frame(const FrameResult& result) {
 }
 
 void MetricScale::takeOdometry() {
+  if (options_.source != "odometry") return;
   while (const std::optional<OdometryPose> pose = publisher_.nextOdometry()) here().search.add(*pose);
 }
 
@@ -141,8 +156,8 @@ bool MetricScale::everySecond(double seconds, bool has_points) {
   ScaleSearch& search = here().search;
   const std::optional<ScaleState> found = search.everySecond();
   if (here().scale.kind == ScaleKind::known_distance) return false;
-  followInertia();
-  if (found && !here().inertia) take(*found);
+  followMap();
+  if (found && !here().map) take(*found);
   tellProblem();
   if (!search.wantsMap(seconds) || !has_points) return false;
   search.mapComes(seconds);
@@ -158,9 +173,9 @@ void MetricScale::take(const ScaleState& found) {
 
 std::string MetricScale::problem() const {
   if (here().scale.kind == ScaleKind::known_distance) return "";
-  if (!inertia_lacks_.empty() && !isKnown()) return inertia_lacks_;
+  if (!map_lacks_.empty() && !isKnown()) return map_lacks_;
   const std::string problem = here().search.problem();
-  const std::int64_t ignored = publisher_.odometryIgnored();
+  const std::int64_t ignored = options_.source == "odometry" ? publisher_.odometryIgnored() : 0;
   if (problem.empty() || ignored == 0) return problem;
   return problem + " (" + std::to_string(ignored) + " messages of it were no pose of a body, or came too many at once)";
 }

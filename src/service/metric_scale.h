@@ -1,6 +1,6 @@
 // The metric scale of the world that the camera is in: set by command, come with a saved map, found by itself, or told
-// by inertia together with where up is. Each world has its own, which is there again where the camera comes back. Poses
-// go out with it, and the log is told of it.
+// by the map itself: by inertia, together with where up is, or by the wheels. Each world has its own, which is there
+// again where the camera comes back. Poses go out with it, and the log is told of it.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +42,9 @@ class MetricScale {
 
   // Each frame, in order.
   void frame(const FrameResult& result);
-  // Why inertia does not tell it; empty where it does.
-  void inertiaLacks(const std::string& what) { inertia_lacks_ = what; }
-  // The wheels', all that came.
+  // Why the map does not tell it, where inertia or wheels are part of it; empty where it does.
+  void mapLacks(const std::string& what) { map_lacks_ = what; }
+  // The wheels', all that came, where they are its source.
   void takeOdometry();
   // A command set_scale.
   CommandOutcome set(const Command& command);
@@ -62,12 +62,17 @@ class MetricScale {
  private:
   static constexpr int no_world = -1;
 
+  // What inertia or the wheels in the map say, as it is known now.
+  struct MapScale {
+    ScaleKind kind = ScaleKind::unknown;
+    double metres_a_unit = 1, sigma = 0;
+  };
   struct WorldScale {
     ScaleSearch search;
     ScaleState scale{};
-    GradualScale by_inertia{1};
+    GradualScale by_map{1};
     std::optional<Eigen::Vector3d> down{};  // by inertia, as it is published
-    std::optional<InertialAlignment> inertia{};
+    std::optional<MapScale> map{};
   };
 
   const WorldScale& here() const { return worlds_.at(world_); }
@@ -75,8 +80,10 @@ class MetricScale {
   void begin(int world);
   void forgetWhatIsUnderWay();
   void enterWorld(const FrameResult& result);
-  void takeInertia(const FrameResult& result);
-  void followInertia();
+  static std::optional<MapScale> mapScale(const FrameResult& result);
+  void takeFromMap(const FrameResult& result);
+  void takeDown(const InertialAlignment& inertia);
+  void followMap();
   void take(const ScaleState& found);
   void tellProblem();
 
@@ -91,7 +98,7 @@ class MetricScale {
   bool ground_wanted_ = false;          // of the map that was asked for
   KeyframeId ground_keyframe_ = -1;     // the latest of the map in which it was looked for
   std::int64_t ground_looks_void_ = 0;  // counts what makes looks under way worthless
-  std::string inertia_lacks_;
+  std::string map_lacks_;
   std::set<std::string> told_problems_;  // without their numbers
 };
 

@@ -13,7 +13,9 @@ PublishingSetup publishingSetup(const Configuration& configuration, const Camera
   setup.camera = camera;
   setup.scale = service.scale;
   setup.map_is_frozen = configuration.settings.tracking.map_is_frozen;
-  if (service.scale.source == "odometry") setup.lcm.wheels_channel = service.scale.odometry.channel;
+  const bool is_motion = configuration.settings.tracking.wheels.has_value();  // the map's own scale counts then
+  if (service.scale.source == "odometry" && is_motion) setup.scale.source = "none";
+  if (setup.scale.source == "odometry") setup.lcm.wheels_channel = service.scale.odometry.channel;
   return setup;
 }
 

@@ -88,7 +88,7 @@ void RunPublisher::frame(const FrameResult& result, const std::string& problem) 
 void RunPublisher::report(const MappingReport& report) {
   totals_.report(report);
   if (report.loop) scale_.mapWasCorrected();
-  if (report.lacking_for_inertia) scale_.inertiaLacks(*report.lacking_for_inertia);
+  if (report.lacking_for_metres) scale_.mapLacks(*report.lacking_for_metres);
   log_.report(report);
   if (!report.map) return;
   map_.mapCame(report.map);
@@ -150,7 +150,7 @@ PublisherStatus RunPublisher::status() const {
   status.frames_dropped += link_.lost();
   status.recording = recording_.goesOn();
   status.camera_problem = link_.cameraProblem();
-  status.scale_problem = link_.inertiaProblem();
+  status.scale_problem = link_.sensorProblem();
   if (status.scale_problem.empty()) status.scale_problem = scale_.problem();
   return status;
 }

@@ -50,8 +50,9 @@ class RunPublisher {
   void report(const MappingReport& report);
   void tick();
 
-  // The robot's inertial unit, where there is one, else null; for capture's thread.
+  // The robot's inertial unit and its wheels, where they are listened to, else null; for capture's thread.
   ImuReceiver* imu() { return publisher_.imu(); }
+  OdometryReceiver* wheels() { return publisher_.wheels(); }
 
   // Since the start, over all runs; for the thread that starts and ends them.
   PublisherStatus status() const;

@@ -32,6 +32,7 @@ void clear(FrameResult& result) {
   result.position_is_held = false;
   result.world = -1;
   result.inertia.reset();
+  result.wheels = {};
   result.world_T_camera = result.reference_T_camera = Pose();
   result.covariance.setZero();
   result.world_covariance.setZero();

@@ -8,6 +8,7 @@
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe.h"
 #include "tracking/stage_times.h"
+#include "wheels/wheel_scale.h"
 
 namespace edgeslam {
 
@@ -37,6 +38,7 @@ struct FrameResult {
   bool position_is_held = false;  // only the rotation is measured (orientation_only.h)
   int world = -1;                 // that the pose is in: counted from 0, one more where a new map was begun; -1: none
   std::optional<InertialAlignment> inertia;  // how that world lies to the earth, where there is an inertial unit
+  WheelScale wheels;                         // how many metres its unit is, where there are wheels
   Pose world_T_camera;                       // map units; measured, or from motion alone where the state says so
   // Of the right-hand update [translation; rotation]: of the pose in the map as it is, and of the pose in the world, in
   // which the map itself may have drifted since its first keyframe.

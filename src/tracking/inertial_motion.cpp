@@ -101,6 +101,17 @@ std::optional<InertialPrediction> InertialMotion::predict(const TimedCamera& las
   return prediction;
 }
 
+std::optional<InertialTurn> InertialMotion::turnBetween(std::int64_t from_ns, std::int64_t to_ns,
+                                                        const std::optional<InertialAlignment>& alignment) const {
+  if (!history_) return std::nullopt;
+  const InertialAlignment known = alignment.value_or(InertialAlignment{});
+  const std::optional<Eigen::Quaterniond> turn = history_->turnBetween(from_ns, to_ns, known.bias);
+  if (!turn) return std::nullopt;
+  const double seconds = secondsBetween(from_ns, to_ns);
+  return InertialTurn{(camera_T_imu_.rotation * *turn * camera_T_imu_.rotation.conjugate()).normalized(),
+                      squared(history_->unit().rate_noise) * seconds + squared(known.rate_bias_sigma * seconds)};
+}
+
 InertialLink InertialMotion::linkUpTo(std::int64_t time_ns, const std::optional<InertialAlignment>& alignment) const {
   if (!history_ || last_keyframe_ < 0) return {};
   const auto motion = history_->between(keyframe_ns_, time_ns, alignment ? alignment->bias : InertialBias{});

@@ -18,6 +18,12 @@ struct InertialPrediction {
   bool knows_position = false;             // else it is the camera's own motion that goes on
 };
 
+// How the camera turned.
+struct InertialTurn {
+  Eigen::Quaterniond first_R_second = Eigen::Quaterniond::Identity();
+  double variance = 0;  // of a rotation vector, each axis [rad^2]
+};
+
 class InertialMotion {
  public:
   // Without a unit nothing is ever known.
@@ -35,6 +41,10 @@ class InertialMotion {
   std::optional<InertialPrediction> predict(const TimedCamera& last, const Matrix6d& covariance, std::int64_t time_ns,
                                             const std::optional<InertialAlignment>& alignment,
                                             const InertialPrediction& by_camera) const;
+
+  // By the gyroscope alone, from one time to another. None where nothing was measured.
+  std::optional<InertialTurn> turnBetween(std::int64_t from_ns, std::int64_t to_ns,
+                                          const std::optional<InertialAlignment>& alignment) const;
 
   // From the last keyframe in this world to a frame; where that becomes a keyframe, the next link is from there.
   InertialLink linkUpTo(std::int64_t time_ns, const std::optional<InertialAlignment>& alignment) const;

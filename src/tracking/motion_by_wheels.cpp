@@ -28,14 +28,16 @@ double squared(double value) { return value * value; }
 
 }  // namespace
 
-MotionByWheels::MotionByWheels(const std::optional<WheelOptions>& wheels) : wheels_(wheels), history_(longest_gap_s) {}
+MotionByWheels::MotionByWheels(const std::optional<WheelOptions>& wheels) : wheels_(wheels) {
+  if (wheels) history_.emplace(longest_gap_s);
+}
 
 void MotionByWheels::add(const OdometryPose& pose) {
-  if (wheels_) history_.add(pose);
+  if (history_) history_->add(pose);
 }
 
 std::optional<OdometryPlace> MotionByWheels::measuredAt(std::int64_t time_ns) const {
-  return wheels_ ? history_.at(utimeOf(time_ns)) : std::nullopt;
+  return history_ ? history_->atOrSoonAfter(utimeOf(time_ns)) : std::nullopt;
 }
 
 // Places before and after the wheels were doubted are of two pieces.

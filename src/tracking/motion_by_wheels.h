@@ -59,7 +59,7 @@ class MotionByWheels {
   bool contradicts(const Located& before, const Located& now, const WheelScale& scale) const;
 
   std::optional<WheelOptions> wheels_;
-  OdometryHistory history_;
+  std::optional<OdometryHistory> history_;
   std::array<Located, 64> located_{};  // a ring
   std::size_t count_ = 0;              // of all that were located in a row
   bool are_believed_ = true;

@@ -391,6 +391,7 @@ void Tracker::tell(Work& work) {
   if (frame_.is_by_wheels) result.reason.assign("wheels only: ").append(lost_reason_);
   result.world = last_world_ = view_.world;
   result.inertia = view_.inertia;
+  result.wheels = view_.wheels;
   result.world_covariance = worldCovariance(camera_, withSharedNoise(frame_.covariance), map_covariance_,
                                             frame_.outlier_share, options_.uncertainty);
   tellMotion(frame_.world_T_camera, result);
@@ -438,6 +439,7 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult
   result.has_pose = true;
   result.world = view_.world;
   result.inertia = view_.inertia;
+  result.wheels = view_.wheels;
   result.world_T_camera = prediction.world_T_camera;
   tellMotion(result.world_T_camera, result);
   result.covariance = prediction.covariance;

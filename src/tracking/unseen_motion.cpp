@@ -6,6 +6,9 @@
 namespace edgeslam {
 namespace {
 
+// Of turns by the wheels and by the gyroscope: of the standard deviation, and of the turn.
+constexpr double contradicting_turn = 5, contradicting_turn_share = 0.1;
+
 TimedCamera cameraOf(const FollowedFrame& frame) { return {frame.images->time_ns, frame.world_T_camera}; }
 
 double secondsSince(const FollowedFrame& frame, std::int64_t time_ns) {
@@ -58,16 +61,51 @@ std::optional<WheelPrediction> UnseenMotion::byWheels(const FollowedFrame& last,
                                                       const MapView& view) const {
   if (!has_wheels_ || last.wheels.piece < 0) return std::nullopt;
   const InertialPrediction by_camera = byCamera(last, time_ns);
-  return wheels_.predict({cameraOf(last), last.wheels, located_place_, located_covariance_}, time_ns, view.wheels,
-                         {by_camera.world_T_camera, by_camera.covariance, false, false});
+  std::optional<WheelPrediction> prediction =
+      wheels_.predict({cameraOf(last), last.wheels, located_place_, located_covariance_}, time_ns, view.wheels,
+                      {by_camera.world_T_camera, by_camera.covariance, false, false});
+  if (prediction && !turnByGyroscope(last, time_ns, view, *prediction)) return std::nullopt;
+  return prediction;
+}
+
+// False where the wheels turned otherwise: they slip. Their way was turned as they say: half of what is wrong of that.
+bool UnseenMotion::turnByGyroscope(const FollowedFrame& last, std::int64_t time_ns, const MapView& view,
+                                   WheelPrediction& prediction) const {
+  const std::optional<InertialTurn> turn = inertia_.turnBetween(last.images->time_ns, time_ns, view.inertia);
+  if (!turn) return true;
+  Pose& pose = prediction.world_T_camera;
+  const Eigen::Quaterniond& from = last.world_T_camera.rotation;
+  const Eigen::Quaterniond by_wheels = from.conjugate() * pose.rotation;
+  const Eigen::Vector3d error = rotationLog((turn->first_R_second * by_wheels.conjugate()).normalized());
+  const double sigma = std::sqrt(prediction.covariance.diagonal().tail<3>().maxCoeff() + turn->variance);
+  const double turned = rotationAngle(turn->first_R_second, Eigen::Quaterniond::Identity());
+  if (error.norm() > contradicting_turn * sigma + contradicting_turn_share * turned) return false;
+  pose.rotation = (from * turn->first_R_second).normalized();
+  if (prediction.knows_position) {
+    const Eigen::Vector3d& start = last.world_T_camera.translation;
+    pose.translation = start + from * (rotationExp(0.5 * error) * (from.conjugate() * (pose.translation - start)));
+  }
+  Matrix6d& covariance = prediction.covariance;
+  const Eigen::Vector3d variances = last.covariance.diagonal().tail<3>().array() + turn->variance;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (variances[axis] >= covariance(3 + axis, 3 + axis)) continue;
+    covariance.row(3 + axis).setZero();
+    covariance.col(3 + axis).setZero();
+    covariance(3 + axis, 3 + axis) = variances[axis];
+  }
+  return true;
 }
 
 InertialPrediction UnseenMotion::predict(const FollowedFrame& last, std::int64_t time_ns, const MapView& view) const {
-  if (const std::optional<WheelPrediction> by_wheels = byWheels(last, time_ns, view)) {
+  const std::optional<WheelPrediction> by_wheels = byWheels(last, time_ns, view);
+  if (by_wheels && by_wheels->knows_position) return {by_wheels->world_T_camera, by_wheels->covariance, false};
+  const InertialPrediction by_camera = byCamera(last, time_ns);
+  const std::optional<InertialPrediction> by_inertia =
+      inertia_.predict(cameraOf(last), last.covariance, time_ns, view.inertia, by_camera);
+  if (by_wheels && !(by_inertia && by_inertia->knows_position)) {
     return {by_wheels->world_T_camera, by_wheels->covariance, false};
   }
-  const InertialPrediction by_camera = byCamera(last, time_ns);
-  return inertia_.predict(cameraOf(last), last.covariance, time_ns, view.inertia, by_camera).value_or(by_camera);
+  return by_inertia.value_or(by_camera);
 }
 
 RowMotion UnseenMotion::whileRowsAreRead(const FollowedFrame& last, std::int64_t time_ns, bool map_stands) const {

@@ -1,5 +1,6 @@
-// Where the camera is while the map does not tell it: as it moved on, by inertia, or by the wheels; and whether that is
-// known so well that it is as good as a measured pose.
+// Where the camera is while the map does not tell it: as it moved on, by inertia, by the wheels, or by both: then it is
+// turned as the gyroscope says, and where the wheels say. And whether that is known so well that it is as good as a
+// measured pose.
 #pragma once
 
 #include <cstdint>
@@ -69,6 +70,8 @@ class UnseenMotion {
  private:
   InertialPrediction byCamera(const FollowedFrame& last, std::int64_t time_ns) const;
   std::optional<WheelPrediction> byWheels(const FollowedFrame& last, std::int64_t time_ns, const MapView& view) const;
+  bool turnByGyroscope(const FollowedFrame& last, std::int64_t time_ns, const MapView& view,
+                       WheelPrediction& prediction) const;
 
   InertiaOnlyOptions inertia_only_;
   WheelsOnlyOptions wheels_only_;

@@ -21,6 +21,9 @@ constexpr double least_turn = 2e-3;           // [rad]
 constexpr double tilt_per_root_metre = 0.05, planar_tilt_per_root_metre = 0.01;  // [rad/sqrt(m)]
 constexpr double least_tilt = 0.01, planar_least_tilt = 3e-3;                    // [rad]
 constexpr double rise_share = 0.05, planar_rise_share = 0.005;                   // of the way
+// As long as the wheels told nothing, the body may have changed its speed by so much.
+constexpr double unheard_acceleration = 1;       // [m/s^2]
+constexpr double unheard_turn_acceleration = 2;  // [rad/s^2]
 
 double squared(double value) { return value * value; }
 
@@ -34,13 +37,14 @@ std::optional<WheelMotion> wheelMotion(const WheelOptions& options, const Odomet
   const double straight = body_moved.translation.norm();
   const bool planar = options.planar;
 
-  const double turn_variance =
-      squared(turn_per_root_radian) * turn + squared(turn_per_root_metre) * way + squared(least_turn);
+  const double unheard = 0.25 * (squared(squared(first.beyond_s)) + squared(squared(second.beyond_s)));
+  const double turn_variance = squared(turn_per_root_radian) * turn + squared(turn_per_root_metre) * way +
+                               squared(least_turn) + squared(unheard_turn_acceleration) * unheard;
   const double tilt_variance = squared(planar ? planar_tilt_per_root_metre : tilt_per_root_metre) * way +
                                squared(turn_per_root_radian) * turn + squared(planar ? planar_least_tilt : least_tilt);
   const double way_variance = squared(way_per_root_metre) * way + squared(way_share * straight) +
                               squared(way_per_turn * turn) + 0.25 * turn_variance * squared(straight) +
-                              squared(least_way);
+                              squared(least_way) + squared(unheard_acceleration) * unheard;
   const double rise_variance = squared((planar ? planar_rise_share : rise_share) * way);
   // The normal of the odometry's plane, as the body lies at the end.
   const Eigen::Vector3d normal = second.local_T_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();

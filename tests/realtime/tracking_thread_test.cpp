@@ -15,7 +15,9 @@
 #include "pipeline/lockstep_run.h"
 #include "realtime/watched_thread.h"
 #include "recording/open_frame_source.h"
+#include "samples/sample_feed.h"
 #include "simulator/simulator.h"
+#include "simulator/wheel_simulation.h"
 
 namespace edgeslam {
 namespace {
@@ -64,6 +66,7 @@ class NoRecorder : public DecisionSink {
   void tookUpdate(std::int64_t, std::int64_t) noexcept override {}
   void mappingBusy(std::int64_t) noexcept override {}
   void measured(std::int64_t, const InertialSample&) noexcept override {}
+  void measured(std::int64_t, const OdometryPose&) noexcept override {}
   void appliedCorrection(std::int64_t, std::int64_t) noexcept override {}
   void passedOver(std::int64_t, std::int64_t) noexcept override {}
   void processed(const std::shared_ptr<const FrameImages>& images) noexcept override { last_ = images; }
@@ -92,7 +95,7 @@ void feed(LiveRun& run, std::int64_t index, std::int64_t time_ns, const cv::Mat&
 // `frozen`: a map that is only localised in; none: one is made.
 template <typename FeedAll>
 WatchedRun watch(const Camera& camera, const FeedAll& feedAll, bool is_looked_at = false,
-                 const std::optional<Map>& frozen = std::nullopt) {
+                 const std::optional<Map>& frozen = std::nullopt, const Settings& given = {}) {
   WatchedRun result;
   std::optional<Onlooker> onlooker;
   if (is_looked_at) onlooker.emplace(result);
@@ -105,7 +108,7 @@ WatchedRun watch(const Camera& camera, const FeedAll& feedAll, bool is_looked_at
   NoRecorder recorder;
   LiveOptions options;
   watchThreadNamed(options.tracking.name);
-  Settings settings;
+  Settings settings = given;
   settings.tracking.map_is_frozen = frozen.has_value();
   LiveRun run(camera, settings, options, observer, &recorder);
   if (frozen) run.goOnWith(*frozen);
@@ -146,9 +149,9 @@ TEST(TrackingThread, TheWatchSeesWhatIsForbidden) {
 }
 
 // With a covered lens and a shake in it.
-SimulatedSequence troubledSequence() {
+SimulatedSequence troubledSequence(SceneKind scene = SceneKind::room) {
   SimulationOptions simulation;
-  simulation.scene = SceneKind::room;
+  simulation.scene = scene;
   simulation.frames = 200;
   simulation.width = 320;
   simulation.height = 240;
@@ -182,6 +185,28 @@ TEST(TrackingThread, NorWhileSomeoneLooksOn) {
   EXPECT_GT(run.good, 40);
   EXPECT_GT(run.looks, 40);
   EXPECT_GT(run.looks_at_lost_frames, 0);
+}
+
+// Nor with wheels, which carry the camera while its lens is covered.
+TEST(TrackingThread, NorWithWheels) {
+  if (!canWatchThreads()) GTEST_SKIP() << "not under sanitizers";
+  const SimulatedSequence sequence = troubledSequence(SceneKind::panels_textured);
+  const std::vector<OdometryPose> wheels = simulateWheels(sequence);
+  Settings settings;
+  useWheels({}, settings);
+  const WatchedRun run = watch(
+      sequence.camera,
+      [&](LiveRun& live) {
+        SampleFeed feed_of_wheels(wheels);
+        for (int i = 0; i < sequence.size(); ++i) {
+          const SimulatedFrame frame = sequence.frame(i);
+          feed_of_wheels.giveUntil(frame.time_ns, [&](const OdometryPose& pose) { live.add(pose); });
+          feed(live, i, frame.time_ns, frame.grey, i == 70 ? "torn" : "");
+        }
+      },
+      /*is_looked_at=*/false, std::nullopt, settings);
+  expectNone(run.trespasses);
+  EXPECT_GT(run.good, 120) << "the lens is covered for 40 frames";
 }
 
 // Nor where a map is only localised in: with other views of it taken over, predicted, lost and found again.

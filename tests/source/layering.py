@@ -8,7 +8,7 @@ import re
 import sys
 import tempfile
 
-ORDER = ["files", "plugins", "image_formats", "geometry", "inertia", "wheels", "frames", "image", "edges", "flow", "map", "adjustment", "tracking", "visual_odometry", "mapping", "places",
+ORDER = ["files", "plugins", "image_formats", "geometry", "samples", "inertia", "wheels", "frames", "image", "edges", "flow", "map", "adjustment", "tracking", "visual_odometry", "mapping", "places",
          "pipeline", "recording", "scale", "evaluation", "report", "benchmark", "simulator", "calibration", "drivers/frame_capture",
          "drivers/v4l2", "drivers/libcamera", "drivers/replay", "drivers/cameras", "drivers/lcm", "drivers/ros2", "drivers/viewer",
          "configuration", "library", "service", "app"]

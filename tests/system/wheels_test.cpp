@@ -49,6 +49,29 @@ TEST_F(Wheels, GiveTheSameBytesTwice) {
   }
 }
 
+TEST_F(Wheels, ARecordingRepeatsTheLiveRunToTheLastByte) {
+  const ReplayedRun live = replayedWith("live", {"--wheels", "--realtime", "--record", folder_.path("recording")});
+  EXPECT_NE(live.outcome.output.find("lengths are metres"), std::string::npos) << live.outcome.output;
+  EXPECT_GE(live.countGood(covered_from, covered_to), live.count("lost", covered_from, covered_to));
+  EXPECT_NE(fileContent(folder_.path("recording/decisions.txt")).find("\nwheels "), std::string::npos);
+  const Outcome repeated =
+      runProgram({"replay", folder_.path("recording"), "--output", folder_.path("repeated"), "--drawings", "0"});
+  ASSERT_EQ(repeated.exit_code, 0) << repeated.messages;
+  for (const char* name : {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "map.ply"}) {
+    EXPECT_TRUE(fileContent(folder_.path("live") + "/" + name) == fileContent(folder_.path("repeated") + "/" + name))
+        << name << "; " << repeated.messages;
+  }
+}
+
+TEST_F(Wheels, TogetherWithInertiaAreNoWorseThanAlone) {
+  const ReplayedRun both = replayedWith("both", {"--imu", "--wheels"});
+  replayedWith("alone", {"--wheels"});
+  EXPECT_NE(both.outcome.output.find("z is up"), std::string::npos) << both.outcome.output;
+  EXPECT_EQ(both.countGood(covered_from, covered_to), covered_to - covered_from + 1);
+  EXPECT_LT(errorOf("both").translation.rmse, 1.1 * errorOf("alone").translation.rmse + 0.001);
+  EXPECT_NEAR(errorOf("both").reference_T_estimate.scale, 1, 0.05);
+}
+
 TEST_F(Wheels, AreNotUsedUnlessAskedFor) {
   const ReplayedRun run = replayedWith("without", {});
   EXPECT_NE(run.outcome.messages.find("wheel_odometry.txt is not used; --wheels uses it"), std::string::npos)
@@ -67,8 +90,6 @@ TEST_F(Wheels, ThatAreNotThereOrCannotBeUsedAreSaid) {
     EXPECT_NE(outcome.messages.find(message), std::string::npos) << outcome.messages;
   };
   refused(folder_.path(""), {}, "wheel_odometry.txt");
-  refused(input_, {"--realtime"}, "--realtime");
-  refused(input_, {"--imu"}, "--imu");
   folder_.write("wheel_odometry.txt", "1 2 3\n");
   refused(folder_.path(""), {}, "wheel_odometry.txt:1: ");
 }

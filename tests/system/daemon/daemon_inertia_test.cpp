@@ -1,65 +1,32 @@
 // Metres and upright by the real program, from what an inertial unit says over LCM.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <thread>
 
 #include "edgeslam/imu_t.hpp"
 #include "frames/inertial_file.h"
+#include "system/daemon/beside_frames.h"
 #include "system/daemon/daemon_fixture.h"
 #include "system/program.h"
 
 namespace edgeslam {
 namespace {
 
-// Publishes what was measured on a simulated way, always a little ahead of the frames that were heard: in bursts, and
-// among messages that are nothing of a unit's.
-class Unit {
- public:
-  Unit(const Robot& robot, const std::string& sequence)
-      : robot_(robot), samples_(readInertialSamples(sequence + "/imu.csv")) {
-    thread_ = std::thread([this] {
-      while (!stopping_) publishDue();
-    });
-  }
-  ~Unit() {
-    stopping_ = true;
-    thread_.join();
-  }
-  Unit(const Unit&) = delete;
-  Unit& operator=(const Unit&) = delete;
-
- private:
-  void publishDue() {
-    const std::int64_t frame_us = robot_.latestUtime();
-    for (; next_ < samples_.size() && samples_[next_].time_ns / 1000 <= frame_us + 150'000; ++next_) {
-      const InertialSample& sample = samples_[next_];
-      imu_t message{};
-      message.utime = sample.time_ns / 1000;
-      std::copy_n(sample.rate.data(), 3, message.rotation_rate);
-      std::copy_n(sample.force.data(), 3, message.specific_force);
-      lcm_.publish("IMU", &message);
-      if (next_ % 40 == 0) publishNonsense(message);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  void publishNonsense(imu_t message) {
-    lcm_.publish("IMU", &message);  // repeated
-    message.utime -= 300'000;
-    lcm_.publish("IMU", &message);  // late
-    message.specific_force[1] = NAN;
-    lcm_.publish("IMU", &message);
-    lcm_.publish("IMU", "nothing", 7);
-  }
-
-  const Robot& robot_;
-  std::vector<InertialSample> samples_;
-  std::size_t next_ = 0;
-  lcm::LCM lcm_{"udpm://239.255.76.67:7667?ttl=0"};
-  std::atomic<bool> stopping_{false};
-  std::thread thread_;
-};
+// In bursts, and among messages that are nothing of a unit's.
+void publish(lcm::LCM& lcm, const InertialSample& sample, std::size_t index) {
+  imu_t message{};
+  message.utime = sample.time_ns / 1000;
+  std::copy_n(sample.rate.data(), 3, message.rotation_rate);
+  std::copy_n(sample.force.data(), 3, message.specific_force);
+  lcm.publish("IMU", &message);
+  if (index % 40 != 0) return;
+  lcm.publish("IMU", &message);  // repeated
+  message.utime -= 300'000;
+  lcm.publish("IMU", &message);  // late
+  message.specific_force[1] = NAN;
+  lcm.publish("IMU", &message);
+  lcm.publish("IMU", "nothing", 7);
+}
 
 class DaemonInertia : public DaemonTest {
  protected:
@@ -71,7 +38,7 @@ class DaemonInertia : public DaemonTest {
 TEST_F(DaemonInertia, GivesMetresAndUpright) {
   const std::string configuration = configure(used_);
   const auto daemon = startOn(way_, {"--config", configuration, "--record", folder_.path("recording")});
-  const Unit unit(*robot_, way_);
+  const BesideFrames<InertialSample> unit(*robot_, readInertialSamples(way_ + "/imu.csv"), publish);
   EXPECT_EQ(daemon->exitCode(), 0) << daemon->said();
   EXPECT_TRUE(robot_->hearsStatus([](const status_t& status) { return status.frames_captured >= frames; }));
   std::vector<state_t> metric;

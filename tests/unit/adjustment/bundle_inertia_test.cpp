@@ -37,7 +37,8 @@ void addInertia(Random& random, double turn_information, double speed_informatio
     problem.ways.push_back({now - 1, now,
                             problem.inertia.metres_a_unit *
                                 (pose(c - 1).rotation.conjugate() * (pose(c).translation - pose(c - 1).translation)),
-                            someWhitening(random, speed_information)});
+                            someWhitening(random, speed_information), inertial_huber_times,
+                            problem.inertia.metres_a_unit});
     if (c < 2) continue;
     BundleSpeedChange change;
     change.cameras = {now - 2, now - 1, now};
@@ -171,6 +172,8 @@ TEST(BundleInertia, DerivativesByScaleGravityAndBiasesAreTheNumericOnes) {
   addBiases(random, some_biases, truth);
   truth.inertia.rate_bias_sigma = truth.inertia.force_bias_sigma = 0;
   truth.inertia.bias_change = some_biases;
+  truth.inertia.told_metres_a_unit = truth.inertia.metres_a_unit;
+  truth.inertia.told_scale_sigma = 0.02;
   BundleStructure structure;
   structureBundle(camera, truth, 30, structure);
   BundleState state;
@@ -235,6 +238,31 @@ TEST_P(BundleInertiaOf, ScaleGravityAndBiasesAreFoundWithTheMap) {
   EXPECT_LT((problem.inertia.bias_change.tail<3>() - some_biases.tail<3>()).norm(), 1e-2);
   EXPECT_GT(result.inertia_covariance.diagonal().minCoeff(), 0);
   EXPECT_LT(std::sqrt(result.inertia_covariance(0, 0)), 0.1);
+}
+
+// Wheels hold the unit of the map by their own metre, and what they tell of the scale counts as well as it is known.
+TEST(BundleInertia, AScaleThatIsToldCountsAsWellAsItIsKnown) {
+  const auto scaleWith = [](double told_share, double sigma) {
+    Random random(9);
+    BundleProblem problem = sceneWithInertia(random, 8, 1).truth;
+    const double true_scale = problem.inertia.metres_a_unit;
+    addBiases(random, Vector6d::Zero(), problem);
+    problem.inertia.told_metres_a_unit = told_share * true_scale;
+    problem.inertia.told_scale_sigma = sigma;
+    for (BundleWay& way : problem.ways) {  // wheels that are larger than they are taken to be
+      way.way *= 1.05;
+      way.metres_a_unit *= 1.05;
+    }
+    Random again(9);
+    const BundleResult result = adjustBundle(sceneWithInertia(again, 8, 1).camera, problem, manyIterations());
+    EXPECT_TRUE(result.usable);
+    return problem.inertia.metres_a_unit / true_scale;
+  };
+  EXPECT_NEAR(scaleWith(1.05, 0), 1, 1e-3) << "of inertia alone";
+  EXPECT_NEAR(scaleWith(1.05, 1e-5), 1.05, 2e-3);
+  const double both = scaleWith(1.05, 0.02);
+  EXPECT_GT(both, 1);
+  EXPECT_LT(both, 1.05);
 }
 
 TEST(BundleInertia, TellsTheScaleThatPointsCannot) {

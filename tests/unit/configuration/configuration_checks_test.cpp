@@ -112,6 +112,9 @@ TEST(ConfigurationService, WhatIsWrongIsToldByLineAndKey) {
   expectRefused("scale:\n  source: odometry\n  odometry_channel: SLAM_POSE\n", "2", "is named twice");
   // In whichever order the sections come.
   expectRefused("scale: {source: odometry, odometry_channel: A}\nlcm:\n  pose_channel: A\n", "3", "is named twice");
+  expectRefused("wheels: {enabled: true}\nscale: {odometry_channel: A}\nlcm:\n  pose_channel: A\n", "4",
+                "is named twice");
+  expectRefused("scale: {odometry_channel: my wheels}\nwheels:\n  enabled: true\n", "3", "scale.odometry_channel: ");
   expectRefused("scale:\n  odometry_window_m: 0\n", "2", "scale.odometry_window_m: 0 is out of range");
   expectRefused("scale:\n  camera_height_m: -1\n", "2", "scale.camera_height_m: -1 is out of range");
   expectRefused("lcm:\n  ttl: 256\n", "2", "lcm.ttl: 256 is out of range");

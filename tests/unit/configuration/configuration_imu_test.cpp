@@ -19,7 +19,7 @@ Configuration configurationOf(const std::string& text) {
 
 void expectRefused(const std::string& text, const std::string& part) {
   try {
-    settingsWithInertia(configurationOf(text));
+    settingsWithSensors(configurationOf(text));
     ADD_FAILURE() << "not refused: " << text;
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
@@ -39,8 +39,8 @@ void expectTheKnownUnit(const Configuration& read) {
 TEST(ConfigurationImu, IsNotUsedUnlessAskedFor) {
   const Configuration read = configurationOf("imu: {" + pose + "}\n");
   EXPECT_FALSE(read.inertia.is_used);
-  EXPECT_FALSE(settingsWithInertia(read).tracking.inertia);
-  EXPECT_FALSE(settingsWithInertia(configurationOf("")).tracking.inertia);
+  EXPECT_FALSE(settingsWithSensors(read).tracking.inertia);
+  EXPECT_FALSE(settingsWithSensors(configurationOf("")).tracking.inertia);
 }
 
 TEST(ConfigurationImu, ReadsAnInlineUnitAndAFile) {
@@ -50,7 +50,7 @@ TEST(ConfigurationImu, ReadsAnInlineUnitAndAFile) {
 
 TEST(ConfigurationImu, AUsedUnitIsInTheSettings) {
   const Settings settings =
-      settingsWithInertia(configurationOf("imu: {enabled: true, calibration: units/known.yaml}\n"));
+      settingsWithSensors(configurationOf("imu: {enabled: true, calibration: units/known.yaml}\n"));
   ASSERT_TRUE(settings.tracking.inertia);
   EXPECT_EQ(settings.tracking.inertia->rate_noise, 0.004);
   EXPECT_TRUE(settings.mapping.local_adjustment.inertia);

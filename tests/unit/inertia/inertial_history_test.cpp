@@ -60,6 +60,20 @@ TEST(InertialHistory, TellsNothingOverGaps) {
   EXPECT_FALSE(InertialHistory({}).between(0, 1, {}));
 }
 
+TEST(InertialHistory, TheTurnAloneIsThatOfTheMotion) {
+  const InertialBias bias{{0.02, -0.01, 0.03}, {0.1, 0, 0}};
+  InertialHistory history({});
+  for (const InertialSample& sample : SimulatedMotion().measured(0, 4, 200, bias)) history.add(sample);
+  for (const double to_s : {0.3, 1.0, 3.7}) {
+    const auto motion = history.between(ns(0.2), ns(to_s), bias);
+    const auto turn = history.turnBetween(ns(0.2), ns(to_s), bias);
+    ASSERT_TRUE(motion && turn);
+    EXPECT_LT(rotationAngle(motion->rotation, *turn), 1e-7);
+  }
+  EXPECT_FALSE(history.turnBetween(ns(0.2), ns(0.2), bias));
+  EXPECT_FALSE(history.turnBetween(ns(3), ns(9), bias));
+}
+
 TEST(InertialHistory, LeavesOutWhatCannotBe) {
   InertialHistory history({});
   InertialSample sample;

@@ -176,5 +176,39 @@ TEST(Slam, InertiaIsUsedWhereItIsConfiguredAndCanBe) {
   EXPECT_TRUE(differs);
 }
 
+TEST(Slam, WheelsAreUsedWhereTheyAreConfiguredAndCanBe) {
+  const SimulatedRobot& robot = simulatedRobot();
+  const std::string configured =
+      robot.folder.write("with_wheels.yaml", "include: robot.yaml\nwheels: {enabled: true}\n");
+  Slam with(configured), without(robot.configuration);
+  WheelMeasurement measured;
+  for (const double bad : {std::nan(""), HUGE_VAL, 1e9}) {
+    measured.position[1] = bad;
+    EXPECT_THROW(with.add(measured), InputError) << bad;
+  }
+  measured.position[1] = 0;
+  measured.orientation = {0.5, 0, 0, 0};
+  EXPECT_THROW(with.add(measured), InputError);
+  measured.orientation = {1, 0, 0, 0};
+  // As the camera moves, in metres: a unit of the map is so many.
+  bool is_metric = false;
+  for (int i = 0; i < robot.frame_count; ++i) {
+    const std::int64_t time_ns = robot.sequence.time(i);
+    const Pose truth = robot.sequence.groundTruth(i);
+    measured.time_ns = time_ns;
+    Eigen::Map<Eigen::Vector3d>(measured.position.data()) = truth.translation;
+    measured.orientation = {truth.rotation.w(), truth.rotation.x(), truth.rotation.y(), truth.rotation.z()};
+    with.add(measured);
+    without.add(measured);
+    const PosedFrame frame = with.process(robot.image(i), time_ns);
+    EXPECT_FALSE(without.process(robot.image(i), time_ns).is_metric);
+    if (!frame.is_metric) continue;
+    is_metric = true;
+    EXPECT_GT(frame.scale_sigma, 0);
+    EXPECT_EQ(frame.down[0], 0) << "wheels do not tell it";
+  }
+  EXPECT_TRUE(is_metric);
+}
+
 }  // namespace
 }  // namespace edgeslam

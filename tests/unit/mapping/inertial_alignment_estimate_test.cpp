@@ -57,8 +57,9 @@ SimulatedMap simulatedMap(const SimulatedMotion& motion, double seconds, double 
   return made;
 }
 
-InertialAlignmentEstimate estimateOf(const SimulatedMap& made, const InertialAlignment& so_far = {}) {
-  return estimateInertialAlignment(made.unit, {}, made.map, 0, so_far);
+InertialAlignmentEstimate estimateOf(const SimulatedMap& made, const InertialAlignment& so_far = {},
+                                     const WheelScale& wheels = {}) {
+  return estimateInertialAlignment(made.unit, {}, made.map, 0, so_far, wheels);
 }
 
 TEST(InertialAlignmentEstimate, FindsScaleGravityAndBiases) {
@@ -97,9 +98,35 @@ TEST(InertialAlignmentEstimate, RefusesWhatTheMotionCannotTell) {
   EXPECT_NE(estimateOf(simulatedMap(turning, 8, 0.35, 0.002)).lacking, "") << "rotation only";
 }
 
+TEST(InertialAlignmentEstimate, WheelsTellTheScaleWhereTheMotionCannot) {
+  SimulatedMotion steady;
+  steady.swing_m = steady.turn_rad = 0;
+  steady.velocity = {0.5, 0.2, 0};
+  const SimulatedMap made = simulatedMap(steady, 8, 0.35, 0.002);
+  const WheelScale wheels{true, 1.01 * made.metres_a_unit, 0.02};
+  const InertialAlignmentEstimate estimate = estimateOf(made, {}, wheels);
+  ASSERT_EQ(estimate.lacking, "");
+  EXPECT_NEAR(estimate.alignment.metres_a_unit / wheels.metres_a_unit, 1, 0.005);
+  EXPECT_LE(estimate.alignment.scale_sigma, 1.001 * wheels.sigma);
+  EXPECT_LT(std::acos(estimate.alignment.gravity.normalized().dot(made.gravity().normalized())), 0.05);
+}
+
+TEST(InertialAlignmentEstimate, WheelsHoldTheScaleThatTheyKnow) {
+  const SimulatedMap made = simulatedMap(SimulatedMotion(), 8, 0.35, 0.002);
+  const WheelScale wheels{true, 1.02 * made.metres_a_unit, 0.03};
+  const InertialAlignment first = estimateOf(made, {}, wheels).alignment;
+  const InertialAlignment again = estimateOf(made, first, wheels).alignment;
+  for (const InertialAlignment& found : {first, again}) {
+    EXPECT_TRUE(found.is_known);
+    EXPECT_NEAR(found.metres_a_unit / wheels.metres_a_unit, 1, 0.01);
+    EXPECT_EQ(found.scale_sigma, wheels.sigma);
+    EXPECT_LT(std::acos(found.gravity.normalized().dot(made.gravity().normalized())), 0.02);
+  }
+}
+
 TEST(InertialAlignmentEstimate, WaitsForEnoughKeyframes) {
   EXPECT_NE(estimateOf(simulatedMap(SimulatedMotion(), 1.2, 0.35, 0.002)).lacking, "");
-  EXPECT_NE(estimateInertialAlignment({}, {}, Map(), 0, {}).lacking, "");
+  EXPECT_NE(estimateInertialAlignment({}, {}, Map(), 0, {}, {}).lacking, "");
 }
 
 TEST(InertialAlignmentEstimate, TellsAGyroscopeWithWrongAxes) {

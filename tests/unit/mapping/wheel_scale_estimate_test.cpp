@@ -101,15 +101,42 @@ TEST(WheelTerms, LeaveOutWhereTheWheelsSlipped) {
   int asked_from = 0;
   std::vector<KeyframeId> free{8, 9, 10};
   addWheelTerms(
-      wheels, scale, map, free, [&](KeyframeId id) { return ++asked_from, id; }, problem);
+      wheels, scale, std::nullopt, map, free, [&](KeyframeId id) { return ++asked_from, id; }, problem);
   EXPECT_EQ(problem.turns.size(), 3U) << "7-8, 8-9, 10-11";
   EXPECT_EQ(problem.ways.size(), 3U);
   BundleProblem of_turns;
   addWheelTerms(
-      wheels, {}, map, free, [&](KeyframeId id) { return id; }, of_turns);
+      wheels, {}, std::nullopt, map, free, [&](KeyframeId id) { return id; }, of_turns);
   EXPECT_EQ(of_turns.turns.size(), 4U) << "without a scale nothing is said of ways";
   EXPECT_TRUE(of_turns.ways.empty());
   EXPECT_EQ(asked_from, 6);
+}
+
+// What the gyroscope says of a turn takes the place of the wheels' claim, and finds what slipped.
+TEST(WheelTerms, CountLessWhereAGyroscopeTellsTheTurnAndNotWhereItContradictsIt) {
+  Map map = mapOf(Drive());
+  const GyroscopeBeside gyroscope{body_T_camera.rotation.conjugate(), {}};  // a unit that sits as the body does
+  for (Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id == 0) continue;
+    keyframe.inertia.from = keyframe.id - 1;
+    const double slipped = keyframe.id == 9 ? 0.1 : 0;
+    keyframe.inertia.motion.rotation = rotationExp((Drive().turn_rad + slipped) * Eigen::Vector3d::UnitZ());
+  }
+  const WheelScale scale{true, metres_a_unit, 0.02};
+  const std::vector<KeyframeId> free{8, 9, 10};
+  const auto problemWith = [&](const std::optional<GyroscopeBeside>& beside) {
+    BundleProblem problem;
+    addWheelTerms(
+        wheels, scale, beside, map, free, [](KeyframeId id) { return static_cast<int>(id); }, problem);
+    return problem;
+  };
+  const BundleProblem with = problemWith(gyroscope), without = problemWith(std::nullopt);
+  EXPECT_EQ(without.turns.size(), 4U);
+  ASSERT_EQ(with.turns.size(), 3U) << "7-8, 9-10, 10-11";
+  ASSERT_EQ(with.ways.size(), 3U);
+  EXPECT_LT(with.turns[0].whitening.norm(), 0.5 * without.turns[0].whitening.norm());
+  EXPECT_EQ(with.ways[0].whitening, without.ways[0].whitening);
+  EXPECT_EQ(with.ways[0].metres_a_unit, metres_a_unit);
 }
 
 }  // namespace

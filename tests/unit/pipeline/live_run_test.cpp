@@ -49,6 +49,9 @@ class KeptDecisions : public DecisionSink {
   void measured(std::int64_t frame_index, const InertialSample& sample) noexcept override {
     decisions.inertia[frame_index].push_back(sample);
   }
+  void measured(std::int64_t frame_index, const OdometryPose& pose) noexcept override {
+    decisions.wheels[frame_index].push_back(pose);
+  }
   void mappingBusy(std::int64_t frame_index) noexcept override { decisions.mapping_busy.insert(frame_index); }
   void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override {
     decisions.corrections[message].push_back(number);

@@ -70,5 +70,33 @@ TEST(FlightRecorder, WhatAnInertialUnitMeasuredComesBeforeItsFrameInOrder) {
   EXPECT_EQ(runDecisions(recording.decisions).inertia.at(3).size(), 30U);
 }
 
+TEST(FlightRecorder, WhatTheWheelsSaidComesBackToTheLastBit) {
+  const TemporaryFolder folder;
+  FlightRecorder recorder(folder.path("recording"), madeDescription());
+  std::vector<WheelsGiven> given;
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 5 * i; ++k) {
+      const Eigen::Vector3d turn(0.01 * k, 1.0 / 3, -0.1 * i);
+      given.push_back({i, {madeTime(i) / 1000 + k, {rotationExp(turn).normalized(), {1.0 / (k + 1), 0.1 * i, -1e-9}}}});
+      recorder.measured(i, given.back().pose);
+      recorder.measured(i, InertialSample{madeTime(i) + k, {0, 0, 0.1}, {0, 0, 9.8}});
+    }
+    recorder.processed(imagesOf(i));
+  }
+  EXPECT_EQ(recorder.stop().not_recorded, 0);
+  const Recording recording = readRecording(folder.path("recording"));
+  EXPECT_TRUE(recording.decisions.complete) << recording.decisions.note;
+  EXPECT_EQ(recording.decisions.inertia.size(), given.size());
+  ASSERT_EQ(recording.decisions.wheels.size(), given.size());
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const WheelsGiven& read = recording.decisions.wheels[i];
+    EXPECT_EQ(read.frame_index, given[i].frame_index);
+    EXPECT_EQ(read.pose.utime, given[i].pose.utime);
+    EXPECT_EQ(read.pose.local_T_body.translation, given[i].pose.local_T_body.translation);
+    EXPECT_EQ(read.pose.local_T_body.rotation.coeffs(), given[i].pose.local_T_body.rotation.coeffs());
+  }
+  EXPECT_EQ(runDecisions(recording.decisions).wheels.at(3).size(), 15U);
+}
+
 }  // namespace
 }  // namespace edgeslam

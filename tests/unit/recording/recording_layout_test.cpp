@@ -115,6 +115,20 @@ TEST(RecordingLayout, LinesOfOtherFormsAreToldWithTheirPlace) {
   expectInputError([] { parseDecision("unreadable 1 2 " + std::string(501, 'x'), ""); }, "expected");
 }
 
+TEST(RecordingLayout, WhatWheelsCannotSayIsNone) {
+  const auto poseOf = [](const std::string& text) { return odometryPoseOf({DecisionKind::wheels, 3, 5000, 0, text}); };
+  ASSERT_TRUE(poseOf("1 2 3 0.6 0 0.8 0"));
+  EXPECT_EQ(poseOf("1 2 3 0.6 0 0.8 0")->utime, 5);
+  for (const char* text : {"", "1 2 3", "1 2 3 1 0 0 0 0", "1 2 3 0.6 0 0.7 0", "nan 2 3 1 0 0 0", "1 2 1e8 1 0 0 0",
+                           "1 2 3 inf 0 0 0", "1 2 x 1 0 0 0"}) {
+    EXPECT_FALSE(poseOf(text)) << text;
+  }
+  DecisionOrder order;
+  EXPECT_EQ(order.add({DecisionKind::wheels, 3, 5000, 0, ""}), "");
+  EXPECT_EQ(order.add({DecisionKind::wheels, 3, 6000, 0, ""}), "");
+  EXPECT_NE(order.add({DecisionKind::wheels, 2, 7000, 0, ""}), "");
+}
+
 TEST(RecordingLayout, DecisionsThatGoBackAreRefusedAndLeaveTheOrderAsItWas) {
   DecisionOrder order;
   const auto add = [&order](DecisionKind kind, std::int64_t index, std::int64_t time_ns, std::int64_t number = 0) {

@@ -27,5 +27,22 @@ TEST(DaemonSetup, NeedsTheHighestPriorityAndTheFolderThatIsWrittenTo) {
   EXPECT_EQ(startNeeds(setup).folder, "/srv/recordings");
 }
 
+// Who is to have what the wheels say: the map, which then has metres by itself, or the search for the scale.
+TEST(DaemonSetup, WheelsAreForTheMapOrForTheScale) {
+  DaemonSetup setup;
+  ScaleOptions& scale = setup.configuration.service.scale;
+  scale.odometry.channel = "WHEELS";
+  EXPECT_EQ(publishingSetup(setup, nullptr).lcm.wheels_channel, "");
+  scale.source = "odometry";
+  EXPECT_EQ(publishingSetup(setup, nullptr).lcm.wheels_channel, "WHEELS");
+  EXPECT_EQ(publishingSetup(setup, nullptr).scale.source, "odometry");
+  setup.configuration.settings.wheels.enabled = true;
+  setup.configuration.settings = settingsWithSensors(setup.configuration);
+  EXPECT_EQ(publishingSetup(setup, nullptr).lcm.wheels_channel, "WHEELS");
+  EXPECT_EQ(publishingSetup(setup, nullptr).scale.source, "none");
+  scale.source = "camera_height";
+  EXPECT_EQ(publishingSetup(setup, nullptr).scale.source, "camera_height");
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -50,7 +50,7 @@ FrameResult frameWithInertia(int index, double metres_a_unit, const Eigen::Vecto
 TEST_F(MetricScaleTest, InertiaTellsItAtOnceAndItMovesSlowlyFromThenOn) {
   MetricScale scale(options_, Pose(), publisher_, work_, log_);
   scale.frame(measuredFrame(0, Pose()));
-  scale.inertiaLacks("inertia: the map is too young for its scale");
+  scale.mapLacks("inertia: the map is too young for its scale");
   EXPECT_NE(scale.problem().find("too young"), std::string::npos);
   scale.frame(frameWithInertia(1, 2, Eigen::Vector3d::UnitY()));
   EXPECT_EQ(publisher_.scale().kind, ScaleKind::inertia);
@@ -65,6 +65,30 @@ TEST_F(MetricScaleTest, InertiaTellsItAtOnceAndItMovesSlowlyFromThenOn) {
   EXPECT_NEAR(publisher_.scale().metres_per_unit, 2 * std::exp(10 * GradualScale::largest_step), 1e-3);
   scale.frame(frameWithInertia(3, 2.2, Eigen::Vector3d(0.1, 1, 0).normalized()));
   EXPECT_GT(publisher_.robot().down->x(), 0.05) << "but where it was wrong";
+}
+
+FrameResult frameWithWheels(int index, double metres_a_unit) {
+  FrameResult frame = measuredFrame(index, Pose());
+  frame.wheels = {true, metres_a_unit, 0.02};
+  return frame;
+}
+
+TEST_F(MetricScaleTest, WheelsInTheMapTellItAtOnceAndWhatItIsSearchedByDoesNotCount) {
+  options_.source = "camera_height";
+  options_.height.camera_height_m = 0.3;
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  scale.frame(measuredFrame(0, Pose()));
+  scale.mapLacks("wheels: 1 of 3 stretches of 0.06 m driven that tell the scale");
+  EXPECT_NE(scale.problem().find("1 of 3 stretches"), std::string::npos);
+  scale.frame(frameWithWheels(1, 2));
+  EXPECT_EQ(publisher_.scale().kind, ScaleKind::odometry);
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 2, 1e-9);
+  EXPECT_FALSE(publisher_.robot().down) << "wheels do not tell it";
+  scale.frame(frameWithWheels(2, 2.2));
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 2, 1e-9) << "once a second";
+  for (int second = 0; second < 10; ++second) scale.everySecond(second, false);
+  EXPECT_NEAR(publisher_.scale().metres_per_unit, 2 * std::exp(10 * GradualScale::largest_step), 1e-3);
+  EXPECT_EQ(said().find("metres a map unit"), said().rfind("metres a map unit")) << "told once";
 }
 
 TEST_F(MetricScaleTest, InertiaDoesNotMoveWhatWasCommanded) {

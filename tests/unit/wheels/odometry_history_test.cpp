@@ -72,5 +72,43 @@ TEST(OdometryHistory, KeepsSomeSecondsHoweverManyMessages) {
   EXPECT_TRUE(history.at(7'100'000));
 }
 
+TEST(OdometryHistory, ShortlyAfterTheNewestTheBodyMovesOn) {
+  OdometryHistory history;
+  EXPECT_FALSE(history.atOrSoonAfter(0));
+  history.add(poseAt(1'000'000, 0));
+  EXPECT_FALSE(history.atOrSoonAfter(1'010'000)) << "it is not known how it moves";
+  drive(history, 1'020'000, 50, 0.01);
+  const std::int64_t newest = *history.newest();
+  EXPECT_EQ(history.atOrSoonAfter(newest)->beyond_s, 0);
+  for (const std::int64_t after : {1'000, 20'000, 50'000}) {
+    EXPECT_FALSE(history.at(newest + after));
+    const auto place = history.atOrSoonAfter(newest + after);
+    ASSERT_TRUE(place) << after;
+    const double x = 0.5e-6 * static_cast<double>(newest + after - 1'000'000);
+    EXPECT_NEAR(place->local_T_body.translation.x(), x, 1e-9);
+    EXPECT_NEAR(rotationAngle(place->local_T_body.rotation, rotationExp({0, 0, 0.1 * x})), 0, 1e-6);
+    EXPECT_NEAR(place->way_m, x, 1e-9);
+    EXPECT_NEAR(place->beyond_s, 1e-6 * static_cast<double>(after), 1e-12);
+    EXPECT_EQ(place->piece, history.at(newest)->piece);
+  }
+  EXPECT_FALSE(history.atOrSoonAfter(newest + 51'000));
+  history.add(poseAt(newest + 20'000, 900));
+  EXPECT_FALSE(history.atOrSoonAfter(newest + 30'000)) << "it jumped";
+}
+
+TEST(OdometryHistory, WhatCannotBeIsLeftOut) {
+  OdometryHistory history;
+  OdometryPose pose = poseAt(1'000'000, 0);
+  EXPECT_TRUE(history.add(pose));
+  EXPECT_FALSE(history.add(pose)) << "the same time again";
+  pose = poseAt(1'010'000, std::nan(""));
+  EXPECT_FALSE(history.add(pose));
+  pose = poseAt(1'010'000, 0);
+  pose.local_T_body.rotation.w() = 2;
+  EXPECT_FALSE(history.add(pose));
+  EXPECT_FALSE(history.add(poseAt(-5, 0)));
+  EXPECT_TRUE(history.add(poseAt(1'010'000, 0)));
+}
+
 }  // namespace
 }  // namespace edgeslam

@@ -12,7 +12,8 @@ namespace {
 
 // Half a metre forward and a quarter turn to the left, seen by a camera that looks forward.
 const Pose body_T_camera{Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), {0.1, 0.02, 0.3}};
-const OdometryPlace start{{Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ())), {3, -2, 0}}, 4, 10, 2};
+const OdometryPlace start{
+    {Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ())), {3, -2, 0}}, 4, 10, 2, 0};
 
 OdometryPlace driven(double way_m, double turn_rad) {
   OdometryPlace place = start;
@@ -32,6 +33,15 @@ TEST(WheelMotion, IsThatOfTheCameraOnTheBody) {
   const Pose camera_then = start.local_T_body * body_T_camera, camera_now = now.local_T_body * body_T_camera;
   const Pose error = (camera_then * motion->first_T_second).inverse() * camera_now;
   EXPECT_LT(error.translation.norm() + rotationLog(error.rotation).norm(), 1e-9);
+}
+
+TEST(WheelMotion, IsKnownLessWellWhereTheWheelsWereNotHeardYet) {
+  OdometryPlace now = driven(0.5, 0.2);
+  const WheelMotion heard = *wheelMotion({body_T_camera, false}, start, now);
+  now.beyond_s = 0.05;
+  const WheelMotion guessed = *wheelMotion({body_T_camera, false}, start, now);
+  EXPECT_GT(waySigma(guessed), waySigma(heard));
+  EXPECT_GT(turnSigma(guessed), turnSigma(heard));
 }
 
 TEST(WheelMotion, IsNotToldBetweenPieces) {
