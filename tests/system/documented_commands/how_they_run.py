@@ -34,12 +34,13 @@ INSTEAD = {
         "it waits for a browser, and the usual port may be taken", ["edgeslam view failure --port 0"],
         until="the page is at http://127.0.0.1:"),
     "edgeslam replay INPUT [--config FILE] [--output DIR] [--map-in FILE] [--map-out FILE] "
-    "[--imu|--wheels] [--realtime [--pace N] [--record DIR] [--lcm]] [--drawings N]": Instead(
+    "[--imu] [--wheels] [--realtime [--pace N] [--record DIR] [--lcm]] [--drawings N]": Instead(
         SYNOPSIS, ["edgeslam replay my_recording --config my_robot.yaml --output r1 --map-in saved.map --map-out new.map "
                    "--drawings 2",
                    "edgeslam replay my_recording --output r2 --realtime --pace 4 --record r2_recorded --lcm",
                    "edgeslam simulate panels_textured --output with_inertia --width 320 --height 240 --frames 90 --imu --wheels",
-                   "edgeslam replay with_inertia --imu --output r3", "edgeslam replay with_inertia --wheels --output r4"]),
+                   "edgeslam replay with_inertia --imu --output r3", "edgeslam replay with_inertia --wheels --output r4",
+                   "edgeslam replay with_inertia --imu --wheels --output r5"]),
     "edgeslam replay DIR": Instead(PLACEHOLDERS, ["edgeslam replay my_recording"]),
     "edgeslam replay RECORDING --realtime --lcm": Instead(
         PLACEHOLDERS, ["edgeslam replay my_recording --realtime --lcm"]),
