@@ -6,7 +6,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::int64_t latest_utime = 1'000'000'000'000'000;
+constexpr std::int64_t latest_utime = 4'000'000'000'000'000;  // [us]: the year 2096, as of odometry
 
 }  // namespace
 

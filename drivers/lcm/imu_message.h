@@ -10,7 +10,7 @@
 namespace edgeslam {
 
 // None where the bytes are no imu_t, or it is nothing that a unit can have measured (isUsable()), or its time stamp is
-// negative or over 1e15.
+// negative or over 4e15 us.
 std::optional<InertialSample> checkImu(const void* data, std::size_t bytes);
 
 using ImuReceiver = MessageReceiver<InertialSample, 4096>;  // over 2 s at 2000 a second

@@ -33,6 +33,14 @@ TEST(ImuMessage, IsWhatTheUnitMeasured) {
   EXPECT_EQ(sample->force, Eigen::Vector3d(1, 2, 9.5));
 }
 
+TEST(ImuMessage, ItsClockMayCountFrom1970) {
+  imu_t message = goodMessage();
+  message.utime = 1'795'545'900'000'000;
+  const std::optional<InertialSample> sample = checked(bytesOf(message));
+  ASSERT_TRUE(sample);
+  EXPECT_EQ(sample->time_ns, 1'795'545'900'000'000'000);
+}
+
 TEST(ImuMessage, WhatCannotBeIsNone) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL, 1e4, -1e300}) {
     for (int axis = 0; axis < 3; ++axis) {
