@@ -94,13 +94,13 @@ Outcome runWithin(int megabytes, const std::vector<std::string>& arguments) {
 
 // From so little memory that the libraries are just loaded (with less, theirs end before the program begins) to enough.
 TEST_F(ProgramFaults, WithoutMemoryEndsWithOneMessage) {
-  int least = 200;
+  int least = 40;
   while (runWithin(least, {"--version"}).exit_code != 0) ASSERT_LT(least += 8, 2000);
   least += 8;  // how much they take differs from start to start
   int without = 0, with = 0;
   for (const std::vector<std::string>& how :
        {std::vector<std::string>{}, {"--realtime", "--pace", "4", "--record", path("recording")}}) {
-    for (int more = 0; more <= 200; more += more < 40 ? 5 : 80) {
+    for (int more = 0; more <= 240; more += more < 80 ? 10 : 80) {
       SCOPED_TRACE(std::to_string(least) + " + " + std::to_string(more) + " MiB");
       fs::remove_all(path("recording"));
       const Outcome outcome = runWithin(least + more, replay(how));
