@@ -163,10 +163,14 @@ Pose corridorPose(double way_m) {
   return lookAlong(corridorPoint(way_m).position, {std::cos(heading), std::sin(heading), -0.03});
 }
 
+// A quadratic spline: with steps in the speed an inertial unit would feel blows.
 double wayGone(const std::vector<double>& distances, double time_s) {
-  const double position = std::clamp(time_s / corridor_step_s, 0.0, static_cast<double>(distances.size() - 2));
-  const std::size_t i = static_cast<std::size_t>(position);
-  return distances[i] + (position - static_cast<double>(i)) * (distances[i + 1] - distances[i]);
+  const double position = std::clamp(time_s / corridor_step_s, 0.0, static_cast<double>(distances.size()) - 2.5);
+  if (position < 0.5) return distances[0] + position * (distances[1] - distances[0]);
+  const std::size_t i = static_cast<std::size_t>(position - 0.5);
+  const double share = position - 0.5 - static_cast<double>(i);
+  return 0.5 * (1 - share) * (1 - share) * distances[i] + (0.5 + share * (1 - share)) * distances[i + 1] +
+         0.5 * share * share * distances[i + 2];
 }
 
 // Uniform in [0, 1); std::uniform_real_distribution differs between libraries.
