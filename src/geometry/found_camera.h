@@ -1,6 +1,7 @@
 // What a run finds of its camera that the calibration does not say, or says wrongly.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "geometry/camera.h"
@@ -16,6 +17,9 @@ inline bool operator==(const FoundCamera& a, const FoundCamera& b) {
   return a.readout_s == b.readout_s && a.focal_scale == b.focal_scale;
 }
 inline bool operator!=(const FoundCamera& a, const FoundCamera& b) { return !(a == b); }
+
+// In steps of a millionth: so it is the same to the last bit when it is told again by the focal lengths of a saved map.
+inline double focalScale(double times) { return std::ldexp(std::round(std::ldexp(times, 20)), -20); }
 
 // A calibrated camera, as it was found to be.
 inline Camera withFound(Camera camera, const FoundCamera& found) {

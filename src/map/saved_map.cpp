@@ -1,8 +1,10 @@
 #include "map/saved_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -34,6 +36,21 @@ std::string readWhole(const std::string& path) {
   readTo(std::min<std::uintmax_t>(size, 16));
   if (bytes == encodeMap(SavedMap()).substr(0, bytes.size())) readTo(size);
   return bytes;
+}
+
+// What the run that saved a map found beside this calibration; none where its camera was another one.
+std::optional<FoundCamera> foundBeside(const Camera& calibrated, const Camera& saved) {
+  constexpr double most_focal_change = 0.3, tolerance = 1e-12;
+  FoundCamera found;
+  if (calibrated.readout_s == 0 && saved.readout_s != 0) found.readout_s = saved.readout_s;
+  found.focal_scale = focalScale(saved.fx / calibrated.fx);
+  if (std::abs(found.focal_scale - 1) > most_focal_change) return std::nullopt;
+  Camera made = withFound(calibrated, found);
+  const auto same = [&](double a, double b) { return std::abs(a - b) <= tolerance * std::abs(b); };
+  if (!same(made.fx, saved.fx) || !same(made.fy, saved.fy)) return std::nullopt;
+  made.fx = saved.fx;
+  made.fy = saved.fy;
+  return made == saved ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace
@@ -73,10 +90,8 @@ SavedMap readMap(const std::string& path) {
 Map loadMap(const std::string& path, const Camera& camera) {
   SavedMap saved = readMap(path);
   if (saved.camera == camera) return std::move(saved.map);
-  Camera found = camera;
-  found.readout_s = saved.camera.readout_s;
-  if (camera.readout_s == 0 && saved.camera == found) {
-    saved.map.found.readout_s = found.readout_s;
+  if (const std::optional<FoundCamera> found = foundBeside(camera, saved.camera)) {
+    saved.map.found = *found;
     return std::move(saved.map);
   }
   std::string problem = path + ": the map was made with another calibration than that of these frames";

@@ -17,7 +17,8 @@ void requireMapCanBeSaved(const std::string& path);
 // Throws InputError where there is no such file, it is no map that decodeMap takes, or it has no keyframe.
 SavedMap readMap(const std::string& path);
 
-// Throws InputError where readMap does, or where the map was made with another calibration than `camera`.
+// Throws InputError where readMap does, or where the map was made with another calibration than `camera`. What was
+// found beside that calibration, a readout where it has none and a focal length, is in `found`.
 Map loadMap(const std::string& path, const Camera& camera);
 
 }  // namespace edgeslam

@@ -174,7 +174,7 @@ bool CameraFinding::look(const Camera& calibrated, const GlobalAdjustmentOptions
     if (estimate &&
         isToChange(looking_for_focal_length, *estimate, 0, keyframes, options_.most_keyframes, focal_length_)) {
       const double logarithm = std::log(map.found.focal_scale) + estimate->value;
-      found.focal_scale = std::exp(std::clamp(logarithm, -most_focal_change, most_focal_change));
+      found.focal_scale = focalScale(std::exp(std::clamp(logarithm, -most_focal_change, most_focal_change)));
     }
   }
   if (++looks_ >= options_.most_looks) readout_.is_settled = focal_length_.is_settled = true;

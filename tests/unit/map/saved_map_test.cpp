@@ -72,6 +72,25 @@ TEST(SavedMapFile, AnotherReadoutIsTold) {
   expectInputError([&] { loadMap(path, other); }, path, "another calibration", "its readout is 0 s, theirs is 0.02 s");
 }
 
+// The next run with the same calibration goes on with what the one before found, to the last bit.
+TEST(SavedMapFile, WhatWasFoundOfTheCameraComesBack) {
+  const TemporaryFolder folder;
+  SavedMap saved = test::madeMap(64, 48);
+  saved.camera.readout_s = 0;
+  for (const double times : {0.9263, 1.0, 1.0871}) {
+    saved.map.found = {0.0213, focalScale(times)};
+    saveMap(folder.path("found.map"), saved.camera, saved.map);
+    EXPECT_EQ(loadMap(folder.path("found.map"), saved.camera).found, saved.map.found) << times;
+  }
+  Camera other = saved.camera;
+  other.fx *= 1.02;
+  expectInputError([&] { loadMap(folder.path("found.map"), other); }, folder.path("found.map"), "calibration");
+  saved.map.found.focal_scale = focalScale(1.5);
+  saveMap(folder.path("far_off.map"), saved.camera, saved.map);
+  expectInputError([&] { loadMap(folder.path("far_off.map"), saved.camera); }, folder.path("far_off.map"),
+                   "calibration");
+}
+
 TEST(SavedMapFile, WithoutAKeyframeThereIsNothingToGoOnFrom) {
   const TemporaryFolder folder;
   const SavedMap made = test::madeMap(64, 48);
