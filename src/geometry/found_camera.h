@@ -1,6 +1,7 @@
 // What a run finds of its camera that the calibration does not say, or says wrongly.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -11,21 +12,23 @@ namespace edgeslam {
 struct FoundCamera {
   std::optional<double> readout_s;  // as Camera::readout_s; none: the calibration's counts
   double focal_scale = 1;           // focal lengths, over those of the calibration
+  std::array<double, 2> radial{};   // added to the calibration's first two radial coefficients of distortion, k1 and k2
 };
 
 inline bool operator==(const FoundCamera& a, const FoundCamera& b) {
-  return a.readout_s == b.readout_s && a.focal_scale == b.focal_scale;
+  return a.readout_s == b.readout_s && a.focal_scale == b.focal_scale && a.radial == b.radial;
 }
 inline bool operator!=(const FoundCamera& a, const FoundCamera& b) { return !(a == b); }
 
-// In steps of a millionth: so it is the same to the last bit when it is told again by the focal lengths of a saved map.
-inline double focalScale(double times) { return std::ldexp(std::round(std::ldexp(times, 20)), -20); }
+// In steps of a millionth: so it is the same to the last bit when a saved map's camera tells it again.
+inline double inMillionths(double value) { return std::ldexp(std::round(std::ldexp(value, 20)), -20); }
 
 // A calibrated camera, as it was found to be.
 inline Camera withFound(Camera camera, const FoundCamera& found) {
   camera.readout_s = found.readout_s.value_or(camera.readout_s);
   camera.fx *= found.focal_scale;
   camera.fy *= found.focal_scale;
+  for (std::size_t k = 0; k < found.radial.size(); ++k) camera.distortion[k] += found.radial[k];
   return camera;
 }
 

@@ -40,14 +40,22 @@ std::string readWhole(const std::string& path) {
 
 // What the run that saved a map found beside this calibration; none where its camera was another one.
 std::optional<FoundCamera> foundBeside(const Camera& calibrated, const Camera& saved) {
-  constexpr double most_focal_change = 0.3, tolerance = 1e-12;
+  constexpr double most_focal_change = 0.3, most_radial_change = 2, tolerance = 1e-12;
   FoundCamera found;
   if (calibrated.readout_s == 0 && saved.readout_s != 0) found.readout_s = saved.readout_s;
-  found.focal_scale = focalScale(saved.fx / calibrated.fx);
-  if (std::abs(found.focal_scale - 1) > most_focal_change) return std::nullopt;
+  found.focal_scale = inMillionths(saved.fx / calibrated.fx);
+  if (!(std::abs(found.focal_scale - 1) <= most_focal_change)) return std::nullopt;
+  for (std::size_t k = 0; k < found.radial.size(); ++k) {
+    found.radial[k] = inMillionths(saved.distortion[k] - calibrated.distortion[k]);
+    if (!(std::abs(found.radial[k]) <= most_radial_change)) return std::nullopt;
+  }
   Camera made = withFound(calibrated, found);
-  const auto same = [&](double a, double b) { return std::abs(a - b) <= tolerance * std::abs(b); };
+  const auto same = [&](double a, double b) { return std::abs(a - b) <= tolerance * std::max(1.0, std::abs(b)); };
   if (!same(made.fx, saved.fx) || !same(made.fy, saved.fy)) return std::nullopt;
+  for (std::size_t k = 0; k < found.radial.size(); ++k) {
+    if (!same(made.distortion[k], saved.distortion[k])) return std::nullopt;
+    made.distortion[k] = saved.distortion[k];
+  }
   made.fx = saved.fx;
   made.fy = saved.fy;
   return made == saved ? std::optional(found) : std::nullopt;

@@ -1,12 +1,13 @@
 // What the map says of the camera that its calibration does not, or says wrongly: how long a rolling shutter reads its
-// rows, and how long the focal length is. With another one than the camera's the rays of the keyframes do not meet as
-// well, so that their adjustment costs more.
+// rows, how long the focal length is, and how the lens distorts. With another one than the camera's the rays of the
+// keyframes do not meet as well, so that their adjustment costs more.
 //
 // How the camera moved while a keyframe was read is told by the poses of frames, which err as long as the readout is
 // not known. So what is found is too small at first. The frames to come are better, and what is found from them is
 // nearer: it is looked for again every few keyframes, until it stays.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
@@ -32,6 +33,19 @@ struct CameraEstimate {
   double sigma = 0;  // standard deviation, if measurements err as they say
 };
 
+// What some keyframes say of their camera's lens: how what their adjustment costs changes with it, about the camera
+// that their rays are of. Changes are [logarithm of the focal lengths; by what share of its distance from the centre
+// distortion moves a pixel half way to the farthest corner, and at nine tenths of it].
+struct LensEquations {
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+};
+struct LensEstimate {
+  Eigen::Vector3d change = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // if measurements err as they say
+  double gain = 0;                                       // what the change takes off the cost
+};
+
 // Of one thing that is looked for: what the looks at it said, one after the other.
 struct CameraLooks {
   int agreeing = 0;  // in a row, that say that it is not as presumed ...
@@ -39,6 +53,15 @@ struct CameraLooks {
   int steady = 0;    // keyframes over which they changed nothing
   bool was_found = false;
   bool is_settled = false;
+};
+
+// Some keyframes of a map, as they are looked at: adjusted by themselves, with all that they see.
+struct LookedAt {
+  Camera camera;  // that the map's rays are of
+  LocalAdjustmentOptions adjustment;
+  std::vector<KeyframeId> keyframes;
+  Map map;
+  double cost = 0;
 };
 
 class CameraFinding {
@@ -53,22 +76,17 @@ class CameraFinding {
             Map& map);
 
   // Nothing is looked for any more.
-  bool isSettled() const { return !options_.is_enabled || (readout_.is_settled && focal_length_.is_settled); }
+  bool isSettled() const {
+    return !options_.is_enabled || (readout_.is_settled && focal_length_.is_settled && distortion_.is_settled);
+  }
 
  private:
+  void lookAtLens(const LookedAt& at, int keyframes, FoundCamera& found);
+
   CameraFindingOptions options_;
-  CameraLooks readout_, focal_length_;
+  CameraLooks readout_, focal_length_, distortion_;
   int since_look_ = 0;  // keyframes
   int looks_ = 0;
-};
-
-// Some keyframes of a map, as they are looked at: adjusted by themselves, with all that they see.
-struct LookedAt {
-  Camera camera;  // that the map's rays are of
-  LocalAdjustmentOptions adjustment;
-  std::vector<KeyframeId> keyframes;
-  Map map;
-  double cost = 0;
 };
 
 // Nothing where the adjustment failed.
@@ -78,6 +96,14 @@ std::optional<LookedAt> lookAt(const Camera& camera, const GlobalAdjustmentOptio
 
 // Readouts up to `longest_s` of either sign are tried. Nothing where there is no least cost.
 std::optional<CameraEstimate> estimateReadout(const LookedAt& at, double longest_s);
-std::optional<CameraEstimate> estimateFocalLength(const LookedAt& at);
+// Nothing where the cost of some trial is not known, or has no least.
+std::optional<LensEquations> lensEquations(const LookedAt& at);
+// With the focal length, the distortion, or both free.
+LensEstimate estimateLens(const LensEquations& equations, bool focal_length, bool distortion);
+
+// With another lens than `camera`, in which `found` counts already.
+FoundCamera withLens(const Camera& camera, const FoundCamera& found, const Eigen::Vector3d& change);
+// True where every pixel is the image of one direction.
+bool isOneToOne(const Camera& camera);
 
 }  // namespace edgeslam

@@ -105,6 +105,12 @@ void MappingWorker::tellOfCamera() {
                                     "camera",
                                     mapper_.camera().fx));
   }
+  if (found.radial != FoundCamera{}.radial) {
+    report(last_frame_)
+        .events.push_back(formatted("the distortion is not that of the calibration, but k1: %.4f, k2: %.4f: calibrate "
+                                    "the camera",
+                                    mapper_.camera().distortion[0], mapper_.camera().distortion[1]));
+  }
 }
 
 // Either will do; wheels know them sooner.

@@ -78,14 +78,19 @@ TEST(SavedMapFile, WhatWasFoundOfTheCameraComesBack) {
   SavedMap saved = test::madeMap(64, 48);
   saved.camera.readout_s = 0;
   for (const double times : {0.9263, 1.0, 1.0871}) {
-    saved.map.found = {0.0213, focalScale(times)};
+    saved.map.found = {0.0213, inMillionths(times)};
     saveMap(folder.path("found.map"), saved.camera, saved.map);
     EXPECT_EQ(loadMap(folder.path("found.map"), saved.camera).found, saved.map.found) << times;
+  }
+  for (const std::array<double, 2> radial : {std::array<double, 2>{0.0713, -0.0321}, {-0.21, 0.13}}) {
+    saved.map.found = {std::nullopt, inMillionths(1.06), {inMillionths(radial[0]), inMillionths(radial[1])}};
+    saveMap(folder.path("found.map"), saved.camera, saved.map);
+    EXPECT_EQ(loadMap(folder.path("found.map"), saved.camera).found, saved.map.found) << radial[0];
   }
   Camera other = saved.camera;
   other.fx *= 1.02;
   expectInputError([&] { loadMap(folder.path("found.map"), other); }, folder.path("found.map"), "calibration");
-  saved.map.found.focal_scale = focalScale(1.5);
+  saved.map.found.focal_scale = inMillionths(1.5);
   saveMap(folder.path("far_off.map"), saved.camera, saved.map);
   expectInputError([&] { loadMap(folder.path("far_off.map"), saved.camera); }, folder.path("far_off.map"),
                    "calibration");
