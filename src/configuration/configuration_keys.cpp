@@ -344,7 +344,7 @@ Keys methodKeys(Settings& settings) {
 
       heading("camera_finding",
               "What the calibration does not say, or says wrongly, the map tells: how long a rolling shutter reads its "
-              "rows, and a focal length that is off by 4 % or more"),
+              "rows, a focal length that is off by 4 % or more, and the distortion of the lens"),
       {"camera_finding.enabled", &settings.mapping.camera_finding.is_enabled, "", 0, 0,
        "off where the calibration is to count as it is"},
 

@@ -7,12 +7,11 @@
 // nearer: it is looked for again every few keyframes, until it stays.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
 #include "geometry/found_camera.h"
-#include "mapping/global_adjustment.h"
+#include "mapping/camera_trial.h"
 
 namespace edgeslam {
 
@@ -29,21 +28,8 @@ struct CameraFindingOptions {
 
 // What some keyframes say of their camera: with what their adjustment costs least.
 struct CameraEstimate {
-  double value = 0;  // readout [s], or the logarithm of how many times as long the focal lengths are
+  double value = 0;  // readout [s], logarithm of how many times as long the focal lengths are, or distortion
   double sigma = 0;  // standard deviation, if measurements err as they say
-};
-
-// What some keyframes say of their camera's lens: how what their adjustment costs changes with it, about the camera
-// that their rays are of. Changes are [logarithm of the focal lengths; by what share of its distance from the centre
-// distortion moves a pixel half way to the farthest corner, and at nine tenths of it].
-struct LensEquations {
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-};
-struct LensEstimate {
-  Eigen::Vector3d change = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // if measurements err as they say
-  double gain = 0;                                       // what the change takes off the cost
 };
 
 // Of one thing that is looked for: what the looks at it said, one after the other.
@@ -53,15 +39,6 @@ struct CameraLooks {
   int steady = 0;    // keyframes over which they changed nothing
   bool was_found = false;
   bool is_settled = false;
-};
-
-// Some keyframes of a map, as they are looked at: adjusted by themselves, with all that they see.
-struct LookedAt {
-  Camera camera;  // that the map's rays are of
-  LocalAdjustmentOptions adjustment;
-  std::vector<KeyframeId> keyframes;
-  Map map;
-  double cost = 0;
 };
 
 class CameraFinding {
@@ -89,21 +66,7 @@ class CameraFinding {
   int looks_ = 0;
 };
 
-// Nothing where the adjustment failed.
-std::optional<LookedAt> lookAt(const Camera& camera, const GlobalAdjustmentOptions& global,
-                               const LocalAdjustmentOptions& local, const std::vector<KeyframeId>& keyframes,
-                               const Map& map);
-
 // Readouts up to `longest_s` of either sign are tried. Nothing where there is no least cost.
 std::optional<CameraEstimate> estimateReadout(const LookedAt& at, double longest_s);
-// Nothing where the cost of some trial is not known, or has no least.
-std::optional<LensEquations> lensEquations(const LookedAt& at);
-// With the focal length, the distortion, or both free.
-LensEstimate estimateLens(const LensEquations& equations, bool focal_length, bool distortion);
-
-// With another lens than `camera`, in which `found` counts already.
-FoundCamera withLens(const Camera& camera, const FoundCamera& found, const Eigen::Vector3d& change);
-// True where every pixel is the image of one direction.
-bool isOneToOne(const Camera& camera);
 
 }  // namespace edgeslam

@@ -1,0 +1,99 @@
+#include "mapping/lens_estimate.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geometry/one_to_one.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr int iterations_of_trial = 3;          // about a map that is adjusted; more find the same
+constexpr double distortion_at[] = {0.5, 0.9};  // of the way from the centre to the farthest corner
+constexpr double most_focal_change = 0.25;      // of the logarithm, over that of the calibration
+constexpr double most_change_at_once = 0.1;
+
+}  // namespace
+
+std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain) {
+  const Eigen::Vector3d step(0.02, 0.004, 0.004);
+  LookedAt trials = at;
+  trials.adjustment.bundle.iterations = iterations_of_trial;
+  const auto costOf = [&](int k, double times_k, int l, double times_l) {
+    const Eigen::Vector3d change =
+        times_k * step(k) * Eigen::Vector3d::Unit(k) + times_l * step(l) * Eigen::Vector3d::Unit(l);
+    return costWith(trials, withFound(at.camera, withLens(at.camera, {}, change)));
+  };
+  LensEquations equations;
+  double largest_gain = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double ahead = costOf(k, 1, k, 0), behind = costOf(k, -1, k, 0);
+    equations.gradient(k) = (ahead - behind) / (2 * step(k));
+    equations.information(k, k) = (ahead - 2 * at.cost + behind) / (step(k) * step(k));
+    largest_gain = std::max(
+        largest_gain, 0.5 * equations.gradient(k) * equations.gradient(k) / std::abs(equations.information(k, k)));
+  }
+  for (int k = 1; k < 3 && largest_gain >= least_gain; ++k) {
+    for (int l = 0; l < k; ++l) {
+      const double alike = costOf(k, 1, l, 1) + costOf(k, -1, l, -1);
+      const double opposite = costOf(k, 1, l, -1) + costOf(k, -1, l, 1);
+      equations.information(k, l) = equations.information(l, k) = (alike - opposite) / (4 * step(k) * step(l));
+    }
+  }
+  if (!equations.gradient.allFinite() || !equations.information.allFinite()) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(equations.information, Eigen::EigenvaluesOnly);
+  return parts.eigenvalues()(0) > 0 ? std::optional(equations) : std::nullopt;
+}
+
+LensEstimate estimateLens(const LensEquations& equations, bool focal_length, bool distortion) {
+  const std::array<bool, 3> is_free{focal_length, distortion, distortion};
+  Eigen::Matrix3d information = equations.information;
+  Eigen::Vector3d gradient = equations.gradient;
+  for (int k = 0; k < 3; ++k) {
+    if (is_free[static_cast<std::size_t>(k)]) continue;
+    information.row(k).setZero();
+    information.col(k).setZero();
+    information(k, k) = 1;
+    gradient(k) = 0;
+  }
+  const Eigen::LLT<Eigen::Matrix3d> factor(information);
+  LensEstimate estimate;
+  estimate.change = -factor.solve(gradient);
+  estimate.covariance = factor.solve(Eigen::Matrix3d::Identity());
+  estimate.gain = -0.5 * gradient.dot(estimate.change);
+  return estimate;
+}
+
+FoundCamera withLens(const Camera& camera, const FoundCamera& found, const Eigen::Vector3d& change) {
+  FoundCamera with = found;
+  const double logarithm = std::clamp(std::log(found.focal_scale) + change(0), -most_focal_change, most_focal_change);
+  with.focal_scale = inMillionths(std::exp(logarithm));
+  Eigen::Matrix2d moves;  // at the two radii, by k1 and k2
+  for (int k = 0; k < 2; ++k) {
+    const double squared = std::pow(distortion_at[k] * farthestCorner(camera), 2);
+    moves.row(k) << squared, squared * squared;
+  }
+  const Eigen::Vector2d radial = moves.inverse() * change.tail<2>();
+  for (int k = 0; k < 2; ++k) {
+    with.radial[static_cast<std::size_t>(k)] = inMillionths(found.radial[static_cast<std::size_t>(k)] + radial(k));
+  }
+  return with;
+}
+
+Eigen::Vector3d worthwhile(const LookedAt& at, const LensEquations& equations, Eigen::Vector3d change) {
+  constexpr int most_halvings = 3;
+  constexpr double least_kept = 0.5;  // of the gain that is expected
+  const double largest = change.cwiseAbs().maxCoeff();
+  if (largest > most_change_at_once) change *= most_change_at_once / largest;
+  for (int halved = 0; halved <= most_halvings; ++halved, change *= 0.5) {
+    const double expected = -equations.gradient.dot(change) - 0.5 * change.dot(equations.information * change);
+    const double gain = at.cost - costWith(at, withFound(at.camera, withLens(at.camera, {}, change)));
+    if (expected > 0 && gain > least_kept * expected) return change;
+  }
+  return Eigen::Vector3d::Zero();
+}
+
+}  // namespace edgeslam

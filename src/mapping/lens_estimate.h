@@ -1,0 +1,38 @@
+// What some keyframes say of their camera's lens: with which focal length and distortion their adjustment costs least.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "geometry/found_camera.h"
+#include "mapping/camera_trial.h"
+
+namespace edgeslam {
+
+// How the cost changes with the lens, about that of the camera that the rays are of: a parabola through trials. Changes
+// are [logarithm of the focal lengths; by what share of its distance from the centre distortion moves a pixel half way
+// to the farthest corner, and at nine tenths of it].
+struct LensEquations {
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+};
+struct LensEstimate {
+  Eigen::Vector3d change = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // if measurements err as they say
+  double gain = 0;                                       // what the change takes off the cost
+};
+
+// Nothing where the cost of some trial is not known, or has no least. Where none of the three by itself explains
+// `least_gain` of the cost, they are taken to act each by itself: that takes a third of the trials.
+std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain = 0);
+
+// With the focal length, the distortion, or both free.
+LensEstimate estimateLens(const LensEquations& equations, bool focal_length, bool distortion);
+
+// With another lens than `camera`, in which `found` counts already.
+FoundCamera withLens(const Camera& camera, const FoundCamera& found, const Eigen::Vector3d& change);
+
+// As much of a change as takes off the cost what the equations say; or nothing of it.
+Eigen::Vector3d worthwhile(const LookedAt& at, const LensEquations& equations, Eigen::Vector3d change);
+
+}  // namespace edgeslam

@@ -1,0 +1,42 @@
+// A walk that is mapped with a calibration whose lens is not the camera's.
+#pragma once
+
+#include <algorithm>
+
+#include "mapping/camera_trial.h"
+#include "unit/mapping/rolling_walk.h"
+
+namespace edgeslam::test {
+
+inline LookedAt lookedAt(const Camera& camera, const Walk& walk) {
+  return *lookAt(camera, {}, {}, allKeyframes(walk.map), walk.map);
+}
+
+inline Camera withFocalLengths(Camera camera, double times) {
+  camera.fx *= times;
+  camera.fy *= times;
+  return camera;
+}
+
+inline Camera withDistortion(Camera camera, double more) {
+  camera.distortion[0] += more;
+  return camera;
+}
+
+// The map of a global shutter, with the rays that a wrong calibration gives it.
+inline Walk mappedWith(const Camera& wrong, std::uint64_t seed) {
+  Walk walk = rollingWalk(seed, 20, 0, 0.5, 0.2);
+  takeRaysAnew(wrong, allKeyframes(walk.map), walk.map);
+  return walk;
+}
+
+// What it moves at the corner, share of the distance from the centre.
+inline double movedAtCorner(const FoundCamera& found) {
+  const Camera camera = Walk::camera();
+  const double x = std::max(camera.cx, camera.width - 1 - camera.cx) / camera.fx;
+  const double y = std::max(camera.cy, camera.height - 1 - camera.cy) / camera.fy;
+  const double squared = x * x + y * y;
+  return found.radial[0] * squared + found.radial[1] * squared * squared;
+}
+
+}  // namespace edgeslam::test
