@@ -32,12 +32,12 @@ struct Looking {
 };
 constexpr Looking looking_for_readout{0.0005, 0, 3, 2, longest_tried_s, 0.001, 0.0003, 0.002};
 // A map that is bent takes up to 4 % even where the calibration is exact (forward motion, bare walls).
-constexpr Looking looking_for_focal_length{0.005, 0.04, 3, 3, 0.02, 0.01, 0.003, 0.01};
+constexpr Looking looking_for_focal_length{0.005, 0.04, 2, 3, 0.02, 0.01, 0.003, 0.01};
 constexpr Looking looking_for_distortion{0.0002, 0.004, 0, 3, 0.02, 0.001, 0.0003, 0.004};
 constexpr double alike = 0.25;        // estimates that differ by less of their value agree, too
 constexpr double beyond_doubt = 8;    // standard deviations; only without a least change
 constexpr double least_share = 0.02;  // of the cost: with the right lens some other one explains less ...
-constexpr double least_gain = 4.5;    // ... and of the cost itself: three standard deviations
+constexpr double least_gain = 2;      // ... and of the cost itself: two standard deviations
 constexpr double hardly_any = 0.25;   // of that gain: with others it does not come to more
 
 std::vector<KeyframeId> latestOf(std::vector<KeyframeId> keyframes, int most) {
