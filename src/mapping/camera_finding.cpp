@@ -146,7 +146,9 @@ ToldOfLens toldOfLens(const LensEquations& equations, double cost) {
   };
   ToldOfLens told;
   if (both.change.cwiseAbs().maxCoeff() < farthest_believed) {
-    told.focal_length = tells(looking_for_focal_length, focalLengthOf(both), both.gain - distortion.gain);
+    Looking beside_distortion = looking_for_focal_length;
+    beside_distortion.least_sigmas = 3;
+    told.focal_length = tells(beside_distortion, focalLengthOf(both), both.gain - distortion.gain);
     told.distortion = tells(looking_for_distortion, distortionOf(both), both.gain - focal_length.gain);
   }
   if (told.focal_length || told.distortion) return told;
