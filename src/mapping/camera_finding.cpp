@@ -146,6 +146,7 @@ ToldOfLens toldOfLens(const LensEquations& equations, double cost) {
   };
   ToldOfLens told;
   if (both.change.cwiseAbs().maxCoeff() < farthest_believed) {
+    // A distortion that is left out looks like another focal length.
     Looking beside_distortion = looking_for_focal_length;
     beside_distortion.least_sigmas = 3;
     told.focal_length = tells(beside_distortion, focalLengthOf(both), both.gain - distortion.gain);

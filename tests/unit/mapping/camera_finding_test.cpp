@@ -76,9 +76,8 @@ TEST(CameraFinding, ADistortionThatIsNotCalibratedIsFoundAndOneThatIsNearlyRight
 
 TEST(CameraFinding, AFocalLengthThatIsFarOffIsFoundAndOneThatIsNearlyRightIsLeftAlone) {
   for (const double times : {1.09, 1.01}) {
-    test::Walk walk = test::rollingWalk(10, 20, 0, motion, noise);
     const Camera wrong = test::withFocalLengths(test::Walk::camera(), times);
-    takeRaysAnew(wrong, test::allKeyframes(walk.map), walk.map);
+    test::Walk walk = test::mappedWith(wrong, 10);
     CameraFinding finding({});
     for (int keyframe = 0; keyframe < 400 && !finding.isSettled(); ++keyframe) finding.look(wrong, {}, {}, walk.map);
     EXPECT_NEAR(walk.map.found.focal_scale, times > 1.05 ? 1 / times : 1, times > 1.05 ? 0.01 : 1e-9);

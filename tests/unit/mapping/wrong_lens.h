@@ -1,8 +1,7 @@
 // A walk that is mapped with a calibration whose lens is not the camera's.
 #pragma once
 
-#include <algorithm>
-
+#include "geometry/one_to_one.h"
 #include "mapping/camera_trial.h"
 #include "unit/mapping/rolling_walk.h"
 
@@ -32,10 +31,7 @@ inline Walk mappedWith(const Camera& wrong, std::uint64_t seed) {
 
 // What it moves at the corner, share of the distance from the centre.
 inline double movedAtCorner(const FoundCamera& found) {
-  const Camera camera = Walk::camera();
-  const double x = std::max(camera.cx, camera.width - 1 - camera.cx) / camera.fx;
-  const double y = std::max(camera.cy, camera.height - 1 - camera.cy) / camera.fy;
-  const double squared = x * x + y * y;
+  const double corner = farthestCorner(Walk::camera()), squared = corner * corner;
   return found.radial[0] * squared + found.radial[1] * squared * squared;
 }
 
