@@ -43,10 +43,7 @@ inline Eigen::Quaterniond rotationExp(const Eigen::Vector3d& rotation_vector) {
 }
 
 // Rotation vector [rad], of length at most pi, of a unit quaternion.
-inline Eigen::Vector3d rotationLog(const Eigen::Quaterniond& rotation) {
-  const Eigen::AngleAxisd angle_axis(rotation.w() < 0 ? Eigen::Quaterniond(-rotation.coeffs()) : rotation);
-  return angle_axis.angle() * angle_axis.axis();
-}
+Eigen::Vector3d rotationLog(const Eigen::Quaterniond& rotation);
 
 inline Pose retract(const Pose& pose, const Vector6d& update) {
   return {(pose.rotation * rotationExp(update.tail<3>())).normalized(),

@@ -22,16 +22,9 @@ struct InertialAlignment {
 };
 
 // Turns the map's frame so that z is up, about the horizontal axis that does it with the least turn.
-inline Eigen::Quaterniond uprightRotation(const InertialAlignment& alignment) {
-  return Eigen::Quaterniond::FromTwoVectors(-alignment.gravity, Eigen::Vector3d::UnitZ());
-}
+Eigen::Quaterniond uprightRotation(const InertialAlignment& alignment);
 
 // The same of a map that was moved.
-inline InertialAlignment moved(const Similarity& new_S_old, const InertialAlignment& alignment) {
-  InertialAlignment now = alignment;
-  now.metres_a_unit /= new_S_old.scale;
-  now.gravity = new_S_old.rotation * alignment.gravity;
-  return now;
-}
+InertialAlignment moved(const Similarity& new_S_old, const InertialAlignment& alignment);
 
 }  // namespace edgeslam
