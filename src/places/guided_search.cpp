@@ -123,8 +123,13 @@ PoseEvidence countEvidence(const RoundResult& round) {
 // Empty where the pose can be trusted.
 std::string reasonToRefuse(const PoseEvidence& evidence, const GuidedSearchOptions& options) {
   const bool bare = evidence.corner_inliers < options.telling_corners;
-  const double inlier_share = bare ? options.bare_inlier_share : options.inlier_share;
-  const double corner_share = bare ? options.bare_corner_share : options.corner_share;
+  const bool many = evidence.corner_inliers >= options.many_corners;
+  const double inlier_share = many   ? options.many_corners_inlier_share
+                              : bare ? options.bare_inlier_share
+                                     : options.inlier_share;
+  const double corner_share = many   ? options.many_corners_share
+                              : bare ? options.bare_corner_share
+                                     : options.corner_share;
   if (evidence.inliers < std::max<double>(options.fewest_inliers, inlier_share * evidence.visible)) {
     return of(evidence.inliers, evidence.visible, "points in view agree");
   }
@@ -132,7 +137,7 @@ std::string reasonToRefuse(const PoseEvidence& evidence, const GuidedSearchOptio
       evidence.corner_inliers < corner_share * evidence.visible_corners) {
     return of(evidence.corner_inliers, evidence.visible_corners, "corners in view agree");
   }
-  if (bare && evidence.explained < options.explained_share) {
+  if (bare && !many && evidence.explained < options.explained_share) {
     return "only " + std::to_string(static_cast<int>(100 * evidence.explained)) +
            " % of the frame's edges are the map's";
   }

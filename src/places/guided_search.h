@@ -31,6 +31,11 @@ struct GuidedSearchOptions {
   double bare_inlier_share = 0.75;
   double bare_corner_share = 0.5;
   double explained_share = 0.8;  // of the frame's edges that must be the map's
+  // Where a place only looks alike, up to 20 corners agree. With clearly more of them fewer of the points in view are
+  // enough: others are hidden by what has come into view since, or lie where the map is bent.
+  int many_corners = 30;
+  double many_corners_inlier_share = 0.25;
+  double many_corners_share = 0.15;  // of the corners in view
   ExplainedEdgesOptions explained_edges;
   int fewest_cells = 5;           // of a grid of 4 x 4 over the image that inliers lie in
   double position_sigma = 0.02;   // largest standard deviation of the position, share of the points' median distance

@@ -51,7 +51,7 @@ class LoopSearch {
         search_(options.search),
         points_(pointsOfOldSide(map, current, candidate, options.search.neighbours)) {
     // Not even many corners tell a place from its like: what is asked of bare scenes is asked of all.
-    search_.telling_corners = std::numeric_limits<int>::max();
+    search_.telling_corners = search_.many_corners = std::numeric_limits<int>::max();
   }
 
   std::vector<Pose> starts(KeyframeId keyframe, const std::optional<Similarity>& rough) const;

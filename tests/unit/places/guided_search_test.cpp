@@ -52,6 +52,7 @@ GuidedSearchOptions noDemands(bool bare) {
   options.inlier_share = options.corner_share = options.bare_inlier_share = options.bare_corner_share = 0;
   options.fewest_corners = 0;
   options.telling_corners = bare ? std::numeric_limits<int>::max() : 0;
+  options.many_corners = std::numeric_limits<int>::max();
   options.explained_share = 0;
   options.fewest_cells = 0;
   options.position_sigma = options.rotation_sigma_deg = std::numeric_limits<double>::infinity();
@@ -136,6 +137,29 @@ TEST(GuidedSearch, EachDemandRefusesJustBeyondWhatSpeaksForThePose) {
     EXPECT_TRUE(room().search(options).accepted) << demand.name;
     options.telling_corners = evidence.corner_inliers + 1;
     EXPECT_FALSE(room().search(options).accepted) << demand.name;
+  }
+}
+
+// Bare or not.
+TEST(GuidedSearch, ManyCornersMakeUpForPointsThatAreNotFound) {
+  const PoseEvidence evidence = room().search(noDemands(false)).evidence;
+  ASSERT_GT(evidence.corner_inliers, 0);
+  for (const bool bare : {false, true}) {
+    GuidedSearchOptions options = noDemands(bare);
+    options.inlier_share = options.bare_inlier_share = 1.001 * evidence.share();
+    options.explained_share = bare ? 1.01 : 0;
+    options.many_corners_inlier_share = 0.999 * evidence.share();
+    options.many_corners_share = 0.999 * evidence.corner_inliers / evidence.visible_corners;
+    options.many_corners = evidence.corner_inliers + 1;
+    EXPECT_FALSE(room().search(options).accepted) << bare;
+    options.many_corners = evidence.corner_inliers;
+    EXPECT_TRUE(room().search(options).accepted) << bare;
+    GuidedSearchOptions more = options;
+    more.many_corners_inlier_share = 1.001 * evidence.share();
+    EXPECT_FALSE(room().search(more).accepted) << bare;
+    more = options;
+    more.many_corners_share = 1.001 * evidence.corner_inliers / evidence.visible_corners;
+    EXPECT_FALSE(room().search(more).accepted) << bare;
   }
 }
 
