@@ -70,11 +70,17 @@ DecodedImage readGreyImage(const std::string& path, const ExpectedSize& expected
   file.read(bytes.data(), static_cast<std::streamsize>(size));
   const bool is_whole = file && file.peek() == std::ifstream::traits_type::eof();
   if (!is_whole) return {{}, path + ": cannot be read"};
-  if (bytes.empty()) return {{}, path + ": is empty"};
+  DecodedImage image = decodeGreyImage(bytes, expected);
+  if (!image.problem.empty()) image.problem.insert(0, path + ": ");
+  return image;
+}
+
+DecodedImage decodeGreyImage(std::string_view bytes, const ExpectedSize& expected) {
+  if (bytes.empty()) return {{}, "is empty"};
   const std::string problem = problemOfHeader(bytes, expected);
-  if (!problem.empty()) return {{}, path + ": " + problem};
+  if (!problem.empty()) return {{}, problem};
   cv::Mat grey = decode(bytes);
-  if (grey.empty()) return {{}, path + ": is no image that can be decoded, or is damaged"};
+  if (grey.empty()) return {{}, "is no image that can be decoded, or is damaged"};
   if (grey.depth() == CV_16U) grey.convertTo(grey, CV_8U, 1.0 / 257.0);
   return {grey, ""};
 }

@@ -3,12 +3,13 @@
 
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <string_view>
 
 namespace edgeslam {
 
 struct DecodedImage {
   cv::Mat grey;         // CV_8U; empty where `problem` is set
-  std::string problem;  // with the path, why it could not be read
+  std::string problem;  // why it could not be read, with the path of a file
 };
 
 // The size that an image must have, and who says so, as "camera.yaml says". An empty one is any size.
@@ -22,6 +23,9 @@ struct ExpectedSize {
 // grey, is a problem here. So is, by its header alone, an image of another size than the one expected, of over 2^26
 // pixels, and one that claims more pixels than can be in so small a file.
 DecodedImage readGreyImage(const std::string& path, const ExpectedSize& expected = {});
+
+// The same of an image file's bytes; `problem` without a path.
+DecodedImage decodeGreyImage(std::string_view bytes, const ExpectedSize& expected = {});
 
 // Why an image of `size` cannot follow those of `expected`, naming both; empty where they are the same or none is
 // expected.

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace edgeslam {
 namespace {
@@ -58,6 +59,10 @@ cv::Mat decodeNetpbm(std::string_view bytes) {
     return std::min(value, header->largest);
   };
   cv::Mat grey(static_cast<int>(header->height), static_cast<int>(header->width), CV_8U);
+  if (channels == 1 && header->largest == 255) {
+    std::copy_n(at, pixels, grey.data);
+    return grey;
+  }
   for (int y = 0; y < grey.rows; ++y) {
     unsigned char* row = grey.ptr(y);
     for (int x = 0; x < grey.cols; ++x) {
@@ -70,6 +75,16 @@ cv::Mat decodeNetpbm(std::string_view bytes) {
     }
   }
   return grey;
+}
+
+std::vector<unsigned char> encodePgm(const cv::Mat& grey) {
+  CV_Assert(grey.type() == CV_8U);
+  const std::string header = "P5\n" + std::to_string(grey.cols) + " " + std::to_string(grey.rows) + "\n255\n";
+  std::vector<unsigned char> bytes;
+  bytes.reserve(header.size() + grey.total());
+  bytes.assign(header.begin(), header.end());
+  for (int y = 0; y < grey.rows; ++y) bytes.insert(bytes.end(), grey.ptr(y), grey.ptr(y) + grey.cols);
+  return bytes;
 }
 
 }  // namespace edgeslam

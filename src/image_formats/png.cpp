@@ -135,8 +135,6 @@ struct Packing {
 
 Packing packingOf(PngEffort effort) {
   switch (effort) {
-    case PngEffort::stored:
-      return {false, Z_NO_COMPRESSION, Z_DEFAULT_STRATEGY};
     case PngEffort::huffman:
       return {true, Z_BEST_SPEED, Z_HUFFMAN_ONLY};
     case PngEffort::quick:

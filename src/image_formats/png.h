@@ -14,7 +14,6 @@ cv::Mat decodePng(std::string_view bytes);
 
 // How much work is put into it. Where no other reason counts: quick.
 enum class PngEffort {
-  stored,   // not packed
   huffman,  // each pixel's difference to its left neighbour, Huffman-coded
   quick,    // likewise, and runs of the same difference made short
   small,    // zlib's level 1 on the best of all differences

@@ -28,7 +28,7 @@ class FlightRecorder : public DecisionSink {
   void unreadable(std::int64_t index, std::int64_t time_ns, const std::string& problem) noexcept override;
 
   // Ends the recording, from any one thread, also while the run goes on: what it decides later is not recorded. Takes
-  // up to 1 s, or as long as the disk needs for a write.
+  // up to 3 s, or as long as the disk needs for a write.
   RecordingStatus stop();
 
   RecordingStatus status() const { return thread_.status(); }

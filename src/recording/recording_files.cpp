@@ -52,6 +52,12 @@ OpenFile openFolder(const fs::path& path) {
   return folder;
 }
 
+// What is written to a file that somebody removed goes nowhere, and no call says so.
+bool isRemoved(const OpenFile& file) {
+  struct stat status {};
+  return ::fstat(file.descriptor(), &status) == 0 && status.st_nlink == 0;
+}
+
 // What a folder holds must outlive a power cut. Some file systems cannot sync folders, which is no reason to fail.
 int syncFolder(const OpenFile& folder) {
   if (::fsync(folder.descriptor()) == 0 || errno == EINVAL || errno == ENOSYS) return 0;
@@ -81,7 +87,7 @@ void checkEmpty(const fs::path& folder) {
 // Throws InputError where something of it fails.
 void makeFolder(const fs::path& folder, const std::vector<FileContent>& files, const std::vector<fs::path>& missing) {
   std::error_code error;
-  fs::create_directories(folder / tum_frames_name, error);
+  fs::create_directories(folder, error);
   if (error) throw InputError(folder.string() + ": the folder cannot be made: " + error.message());
   writeFileSet(folder.string(), files);
   int reason = syncFolder(openFolder(folder));
@@ -95,7 +101,6 @@ void makeFolder(const fs::path& folder, const std::vector<FileContent>& files, c
 void removeFolder(const fs::path& folder, const std::vector<FileContent>& files, const std::vector<fs::path>& missing) {
   std::error_code ignored;
   for (const FileContent& file : files) fs::remove(folder / file.name, ignored);
-  fs::remove(folder / tum_frames_name, ignored);
   for (const fs::path& made : missing) fs::remove(made, ignored);
 }
 
@@ -113,11 +118,11 @@ OpenFile& OpenFile::operator=(OpenFile&& other) noexcept {
 }
 
 RecordingFiles::RecordingFiles(const std::string& folder, const std::string& camera, const std::string& configuration,
-                               const std::string& description, const std::string& mask)
-    : folder_(folder) {
+                               const std::string& description, const std::string& mask) {
   checkEmpty(folder);
   std::vector<FileContent> files{{tum_camera_name, camera},
                                  {recording_configuration_name, configuration},
+                                 {frame_archive_name, ""},
                                  {tum_list_name, "# timestamp filename\n"},
                                  {recording_decisions_name, ""}};
   if (!mask.empty()) files.push_back({recording_mask_name, mask});
@@ -125,53 +130,56 @@ RecordingFiles::RecordingFiles(const std::string& folder, const std::string& cam
   const std::vector<fs::path> missing = missingFolders(folder);
   try {
     makeFolder(folder, files, missing);
-    frames_folder_ = openFolder(fs::path(folder) / tum_frames_name);
-    decisions_ = openLines(folder, recording_decisions_name);
-    list_ = openLines(folder, tum_list_name);
+    frames_ = openToAppend(folder, frame_archive_name);
+    decisions_ = openToAppend(folder, recording_decisions_name);
+    list_ = openToAppend(folder, tum_list_name);
   } catch (const InputError&) {
     removeFolder(folder, files, missing);
     throw;
   }
 }
 
-RecordingFiles::LineFile RecordingFiles::openLines(const std::string& folder, const char* name) {
-  LineFile lines{OpenFile(), folder + "/" + name};
-  lines.file = OpenFile(::open(lines.path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
-  if (lines.file.descriptor() < 0) throw InputError(writeProblem(lines.path, errno));
-  lines.length = ::lseek(lines.file.descriptor(), 0, SEEK_END);
-  return lines;
+RecordingFiles::GrowingFile RecordingFiles::openToAppend(const std::string& folder, const char* name) {
+  GrowingFile growing{OpenFile(), folder + "/" + name};
+  growing.file = OpenFile(::open(growing.path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+  if (growing.file.descriptor() < 0) throw InputError(writeProblem(growing.path, errno));
+  growing.length = ::lseek(growing.file.descriptor(), 0, SEEK_END);
+  return growing;
 }
 
-std::string RecordingFiles::addFrame(const std::string& name, const std::vector<unsigned char>& content) {
-  const std::string path = folder_ + "/" + tum_frames_name + "/" + name;
-  OpenFile file(::openat(frames_folder_.descriptor(), name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
-  if (file.descriptor() < 0) return writeProblem(path, errno);
-  const int error = writeAll(file.descriptor(), reinterpret_cast<const char*>(content.data()), content.size()).error;
+std::string RecordingFiles::addFrame(const std::string& name, std::int64_t time_ns,
+                                     const std::vector<unsigned char>& image) {
+  const int archive = frames_.file.descriptor();
+  const auto header = archiveHeader(std::string(tum_frames_name) + "/" + name, time_ns, image.size());
+  const std::string padding(archivePadding(image.size()), '\0');
+  int error = writeAll(archive, header.data(), header.size()).error;
+  if (error == 0) error = writeAll(archive, reinterpret_cast<const char*>(image.data()), image.size()).error;
+  if (error == 0) error = writeAll(archive, padding.data(), padding.size()).error;
   if (error != 0) {
-    ::unlinkat(frames_folder_.descriptor(), name.c_str(), 0);
-    return writeProblem(path, error);
+    return writeProblem(frames_.path, firstError(error, ::ftruncate(archive, frames_.length)));
   }
+  const auto bytes = static_cast<off_t>(header.size() + image.size() + padding.size());
   // The disk takes the frame now, so that there is less to wait for later. Whether it did is seen then.
-  ::sync_file_range(file.descriptor(), 0, 0, SYNC_FILE_RANGE_WRITE);
-  waiting_.push_back({std::move(file), path});
+  ::sync_file_range(archive, frames_.length, bytes, SYNC_FILE_RANGE_WRITE);
+  frames_.length += bytes;
   return "";
 }
 
+std::int64_t RecordingFiles::nextOffset() const { return frames_.length + static_cast<std::int64_t>(archive_block); }
+
 std::string RecordingFiles::confirmFrames() {
-  if (waiting_.empty()) return "";
-  const std::vector<WaitingFrame> frames = std::exchange(waiting_, {});
-  for (const WaitingFrame& frame : frames) {
-    if (::fdatasync(frame.file.descriptor()) != 0) return writeProblem(frame.path, errno);
-  }
-  const int error = syncFolder(frames_folder_);
-  return error == 0 ? "" : writeProblem(folder_ + "/" + tum_frames_name, error);
+  if (confirmed_frames_ == frames_.length) return "";
+  if (isRemoved(frames_.file)) return writeProblem(frames_.path, ENOENT);
+  if (::fdatasync(frames_.file.descriptor()) != 0) return writeProblem(frames_.path, errno);
+  confirmed_frames_ = frames_.length;
+  return "";
 }
 
-std::string RecordingFiles::appendDecisions(std::string_view lines) { return append(decisions_, lines); }
+std::string RecordingFiles::appendDecisions(std::string_view lines) { return appendLines(decisions_, lines); }
 
-std::string RecordingFiles::appendList(std::string_view lines) { return append(list_, lines); }
+std::string RecordingFiles::appendList(std::string_view lines) { return appendLines(list_, lines); }
 
-std::string RecordingFiles::append(LineFile& file, std::string_view lines) {
+std::string RecordingFiles::appendLines(GrowingFile& file, std::string_view lines) {
   if (lines.empty()) return "";
   const WriteOutcome outcome = writeAll(file.file.descriptor(), lines.data(), lines.size());
   int error = outcome.error;
@@ -188,7 +196,7 @@ std::string RecordingFiles::append(LineFile& file, std::string_view lines) {
 
 std::int64_t RecordingFiles::freeBytes() const {
   struct statvfs space {};
-  if (::fstatvfs(frames_folder_.descriptor(), &space) != 0) return 0;
+  if (::fstatvfs(frames_.file.descriptor(), &space) != 0) return 0;
   return static_cast<std::int64_t>(space.f_bavail) * static_cast<std::int64_t>(space.f_frsize);
 }
 

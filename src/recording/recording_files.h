@@ -36,37 +36,31 @@ class RecordingFiles {
   RecordingFiles(const std::string& folder, const std::string& camera, const std::string& configuration,
                  const std::string& description, const std::string& mask = "");
 
-  // Writes a new file of that name into rgb/; the disk begins to take it. Removes it where that fails.
-  std::string addFrame(const std::string& name, const std::vector<unsigned char>& content);
+  // Appends a frame's image file to rgb.tar, where it gets that name; the disk begins to take it. Where that fails,
+  // nothing of it is left.
+  std::string addFrame(const std::string& name, std::int64_t time_ns, const std::vector<unsigned char>& image);
+  // Of the next image in rgb.tar [byte].
+  std::int64_t nextOffset() const;
   // Waits until the disk holds all frames added.
   std::string confirmFrames();
   // Appends whole lines and waits until the disk holds them. Where that fails, those lines stay that fitted.
   std::string appendDecisions(std::string_view lines);
   std::string appendList(std::string_view lines);
 
-  // Frames added and not yet confirmed; each is an open file.
-  std::size_t waitingFrames() const { return waiting_.size(); }
   // [bytes] that the disk has left for us; 0 where it does not say.
   std::int64_t freeBytes() const;
 
  private:
-  struct LineFile {
+  struct GrowingFile {
     OpenFile file;
     std::string path;
-    off_t length = 0;  // [bytes], whole lines
+    off_t length = 0;  // [bytes], whole lines or frames
   };
-  static LineFile openLines(const std::string& folder, const char* name);
-  static std::string append(LineFile& file, std::string_view lines);
+  static GrowingFile openToAppend(const std::string& folder, const char* name);
+  static std::string appendLines(GrowingFile& file, std::string_view lines);
 
-  struct WaitingFrame {
-    OpenFile file;
-    std::string path;
-  };
-
-  std::string folder_;
-  OpenFile frames_folder_;
-  LineFile decisions_, list_;
-  std::vector<WaitingFrame> waiting_;
+  GrowingFile frames_, decisions_, list_;
+  off_t confirmed_frames_ = 0;  // [bytes]
 };
 
 }  // namespace edgeslam

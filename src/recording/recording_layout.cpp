@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <system_error>
 #include <vector>
 
 #include "edgeslam/input_error.h"
@@ -30,7 +32,8 @@ struct LineForm {
 };
 
 constexpr std::array<LineForm, 11> line_forms{{
-    {DecisionKind::frame, "frame", &Decision::index, &Decision::time_ns, false, "frame INDEX TIME_NS"},
+    {DecisionKind::frame, "frame", &Decision::index, &Decision::time_ns, true,
+     "frame INDEX TIME_NS OFFSET SIZE CHECKSUM"},
     {DecisionKind::dropped, "dropped", &Decision::index, &Decision::time_ns, false, "dropped INDEX TIME_NS"},
     {DecisionKind::unreadable, "unreadable", &Decision::index, &Decision::time_ns, true,
      "unreadable INDEX TIME_NS REASON"},
@@ -58,6 +61,13 @@ std::string checksum(std::string_view text) {
   return formatted("%08lx", static_cast<unsigned long>(value));
 }
 
+std::optional<std::uint32_t> checksumOf(std::string_view digits) {
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  if (error != std::errc() || end != digits.data() + digits.size() || digits.size() != checksum_digits) return {};
+  return value;
+}
+
 // None where the text is not just so many.
 template <std::size_t count>
 std::optional<std::array<double, count>> numbersOf(const std::string& text) {
@@ -81,6 +91,20 @@ std::string_view takeWord(std::string_view& text) {
 }
 
 }  // namespace
+
+Decision frameDecision(std::int64_t index, std::int64_t time_ns, const ArchivedImage& image) {
+  return {DecisionKind::frame, index, time_ns, 0,
+          std::to_string(image.offset) + " " + std::to_string(image.size) + " " + formatted("%08x", image.checksum)};
+}
+
+std::optional<ArchivedImage> archivedImageOf(const Decision& decision) {
+  const std::vector<std::string_view> columns = splitColumns(decision.text);
+  if (decision.kind != DecisionKind::frame || columns.size() != 3) return std::nullopt;
+  const auto offset = parseNanoseconds(columns[0]), size = parseNanoseconds(columns[1]);
+  const auto checksum = checksumOf(columns[2]);
+  if (!offset || *offset < 0 || !size || *size < 1 || !checksum) return std::nullopt;
+  return ArchivedImage{*offset, *size, *checksum};
+}
 
 Decision inertiaDecision(std::int64_t frame_index, const InertialSample& sample) {
   const Eigen::Vector3d &rate = sample.rate, &force = sample.force;
@@ -175,10 +199,14 @@ std::string DecisionOrder::add(const Decision& decision) {
     case DecisionKind::dropped:
     case DecisionKind::unreadable:
       if (decision.index <= index_) return goesBack("the frame's index", decision.index, index_);
-      if (decision.kind != DecisionKind::dropped) {
-        if (decision.time_ns <= time_ns_) return goesBack("the frame's time stamp [ns]", decision.time_ns, time_ns_);
-        time_ns_ = decision.time_ns;
+      if (decision.kind != DecisionKind::dropped && decision.time_ns <= time_ns_) {
+        return goesBack("the frame's time stamp [ns]", decision.time_ns, time_ns_);
       }
+      if (const auto image = archivedImageOf(decision)) {
+        if (image->offset < archive_end_) return goesBack("the image's place [byte]", image->offset, archive_end_ - 1);
+        archive_end_ = image->offset + image->size;
+      }
+      if (decision.kind != DecisionKind::dropped) time_ns_ = decision.time_ns;
       index_ = decision.index;
       break;
     case DecisionKind::update:

@@ -1,7 +1,7 @@
-// What a recording of the flight recorder looks like on disk, for its writer and its reader. It is a TUM RGB-D folder
-// with some files more:
-//   rgb/SECONDS.NANOSECONDS.png   the frames, 8 bits of grey, lossless
-//   rgb.txt                       "time-stamp file" a line [s], only files that the disk has confirmed
+// What a recording of the flight recorder looks like on disk, for its writer and its reader. Unpacked it is a TUM RGB-D
+// folder with some files more:
+//   rgb.tar                       the frames' images, 8 bits of grey, lossless: rgb/SECONDS.NANOSECONDS.pgm or .png
+//   rgb.txt                       "time-stamp file" a line [s], only images that the disk has confirmed
 //   camera.yaml                   the calibration, as readCalibration reads it
 //   edgeslam.yaml                 the configuration of the run
 //   mask.png                      where the camera's images were not looked at, where the run had a mask
@@ -17,11 +17,13 @@
 
 #include "frames/tum_folder.h"
 #include "inertia/inertial_unit.h"
+#include "recording/frame_archive.h"
 #include "wheels/odometry_pose.h"
 
 namespace edgeslam {
 
-constexpr int recording_format_version = 2;  // 1 is read, too: it has neither inertia nor wheels
+constexpr int recording_format_version = 3;  // 1 and 2 are read, too
+constexpr int first_archive_format = 3;      // before, frames are files in rgb/, as PNG
 constexpr const char* recording_description_name = "recording.txt";
 constexpr const char* recording_decisions_name = "decisions.txt";
 constexpr const char* recording_configuration_name = "edgeslam.yaml";
@@ -30,8 +32,9 @@ constexpr const char* recording_map_name = "map_at_start.map";
 
 // The lines of decisions.txt, in the order in which the run took them:
 enum class DecisionKind {
-  frame,       // "frame INDEX TIME_NS": was processed, and is in rgb/
-  dropped,     // "dropped INDEX TIME_NS": was not processed, tracking being behind
+  frame,    // "frame INDEX TIME_NS OFFSET SIZE CHECKSUM": was processed; its image file is at byte OFFSET of rgb.tar,
+            // and has SIZE bytes with this CRC-32 (8 hexadecimal digits)
+  dropped,  // "dropped INDEX TIME_NS": was not processed, tracking being behind
   unreadable,  // "unreadable INDEX TIME_NS REASON"
   update,      // "update INDEX NUMBER": before processing frame INDEX, tracking took map update NUMBER
   inertia,     // "inertia INDEX TIME_NS RATE RATE RATE FORCE FORCE FORCE": before processing frame INDEX, tracking was
@@ -50,8 +53,13 @@ struct Decision {
   std::int64_t index = 0;    // of the frame, counted over all frames of the camera from 0; for a correction: MESSAGE
   std::int64_t time_ns = 0;  // frame, dropped, unreadable, inertia, wheels
   std::int64_t number = 0;   // update and correction: NUMBER; gap: COUNT
-  std::string text;          // unreadable and stopped: why; inertia and wheels: the numbers
+  std::string text;          // unreadable and stopped: why; frame, inertia and wheels: what else stands in the line
 };
+
+// Of kind `frame`.
+Decision frameDecision(std::int64_t index, std::int64_t time_ns, const ArchivedImage& image);
+// The other way; nothing where it is of another kind, or the text is not that.
+std::optional<ArchivedImage> archivedImageOf(const Decision& decision);
 
 // Of kind `inertia`. The numbers have all their digits.
 Decision inertiaDecision(std::int64_t frame_index, const InertialSample& sample);
@@ -74,8 +82,8 @@ std::optional<std::string_view> undamagedDecision(std::string_view line);
 Decision parseDecision(std::string_view text, const std::string& place);
 
 // The order in which decisions can follow each other: INDEX grows over all frames, TIME_NS over those not dropped;
-// updates', inertia's and wheels' INDEX and corrections' MESSAGE never go back, their NUMBERs grow; nothing follows the
-// last line. All values are 0 to 4e18.
+// updates', inertia's and wheels' INDEX and corrections' MESSAGE never go back, their NUMBERs grow; an image lies
+// behind the one before; nothing follows the last line. All values are 0 to 4e18.
 class DecisionOrder {
  public:
   // Empty and remembers the decision, or says why it cannot come next.
@@ -84,6 +92,7 @@ class DecisionOrder {
  private:
   bool ended_ = false;
   std::int64_t index_ = -1, time_ns_ = -1;
+  std::int64_t archive_end_ = 0;  // of the last image [byte]
   std::int64_t update_index_ = 0, update_number_ = -1;
   std::int64_t inertia_index_ = 0, wheels_index_ = 0;
   std::int64_t busy_index_ = -1;

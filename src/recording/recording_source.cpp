@@ -31,37 +31,45 @@ void checkFile(const std::string& path, std::uintmax_t largest_bytes) {
   if (fs::file_size(path, error) > largest_bytes || error) throw InputError(path + ": too large for a recording");
 }
 
+// In rgb/, of a recording whose frames are files.
 std::string framePath(const Recording& recording, std::int64_t time_ns) {
   return (fs::path(recording.folder) / tum_frames_name / tumFrameName(time_ns)).string();
 }
 
-void checkFormat(const std::string& version, const std::string& place) {
-  const std::string known = std::to_string(recording_format_version);
-  if (version == known || version == "1") return;
-  throw InputError(place + "format version " + version + "; this program reads version 1 to " + known);
+std::string archivePath(const Recording& recording) { return recording.folder + "/" + frame_archive_name; }
+
+int readFormat(const std::string& version, const std::string& place) {
+  for (int known = 1; known <= recording_format_version; ++known) {
+    if (version == std::to_string(known)) return known;
+  }
+  throw InputError(place + "format version " + version + "; this program reads version 1 to " +
+                   std::to_string(recording_format_version));
 }
 
-// recording.txt: the program's version.
-std::string readProgramVersion(const std::string& path) {
+struct Versions {
+  int format = 0;  // 0: not read yet
+  std::string program;
+};
+
+// recording.txt
+Versions readVersions(const std::string& path) {
   checkFile(path, 1 << 16);
-  std::string version;
-  bool format_known = false;
+  Versions versions;
   for (const TextLine& line : readTextLines(path)) {
     const std::string place = placeInFile(path, line.number);
     const std::size_t blank = std::min(line.text.find(' '), line.text.size());
     const std::string key = line.text.substr(0, blank);
     const std::string value = line.text.substr(std::min(blank + 1, line.text.size()));
     if (key == "format") {
-      checkFormat(value, place);
-      format_known = true;
+      versions.format = readFormat(value, place);
     } else if (key == "program") {
-      version = value;
+      versions.program = value;
     } else {
       throw InputError(place + "expected 'format VERSION' or 'program VERSION', found '" + line.text + "'");
     }
   }
-  if (!format_known) throw InputError(path + ": the line 'format VERSION' is missing");
-  return version;
+  if (versions.format == 0) throw InputError(path + ": the line 'format VERSION' is missing");
+  return versions;
 }
 
 struct DecisionLines {
@@ -70,7 +78,34 @@ struct DecisionLines {
   std::string note;    // why there is no such line
 };
 
-DecisionLines readDecisionLines(const std::string& path) {
+// What an image file of the camera's size can take.
+std::int64_t mostImageBytes(const Camera& camera) {
+  constexpr std::int64_t most_around = 1 << 16, most_a_pixel = 2;
+  return most_around + most_a_pixel * camera.width * camera.height;
+}
+
+// Throws InputError where what stands behind the numbers is nothing that the recorder could have written.
+void checkText(const Decision& decision, int format, const Camera& camera, const std::string& place) {
+  const auto unlessThere = [&](bool there, const std::string& expected) {
+    if (!there) throw InputError(place + "expected " + expected + ", found '" + decision.text + "'");
+  };
+  if (decision.kind == DecisionKind::frame && format < first_archive_format) {
+    unlessThere(decision.text.empty(),
+                "nothing after the frame's time stamp in a recording of format " + std::to_string(format));
+  } else if (decision.kind == DecisionKind::frame) {
+    const std::optional<ArchivedImage> image = archivedImageOf(decision);
+    const std::int64_t most = mostImageBytes(camera);
+    unlessThere(image && image->size <= most, "OFFSET SIZE CHECKSUM of an image of " + std::to_string(camera.width) +
+                                                  " x " + std::to_string(camera.height) + " pixels in " +
+                                                  std::to_string(most) + " bytes at most");
+  } else if (decision.kind == DecisionKind::inertia) {
+    unlessThere(inertialSampleOf(decision).has_value(), "six numbers that an inertial unit can have measured");
+  } else if (decision.kind == DecisionKind::wheels) {
+    unlessThere(odometryPoseOf(decision).has_value(), "seven numbers, a position [m] and a unit quaternion");
+  }
+}
+
+DecisionLines readDecisionLines(const std::string& path, int format, const Camera& camera) {
   constexpr std::uintmax_t largest_bytes = std::uintmax_t{1} << 29;  // days of frames
   checkFile(path, largest_bytes);
   std::ifstream file(path, std::ios::binary);
@@ -88,14 +123,7 @@ DecisionLines readDecisionLines(const std::string& path) {
     }
     const Decision decision = parseDecision(*text, place);
     if (const std::string problem = order.add(decision); !problem.empty()) throw InputError(place + problem);
-    if (decision.kind == DecisionKind::inertia && !inertialSampleOf(decision)) {
-      throw InputError(place + "expected six numbers that an inertial unit can have measured, found '" + decision.text +
-                       "'");
-    }
-    if (decision.kind == DecisionKind::wheels && !odometryPoseOf(decision)) {
-      throw InputError(place + "expected seven numbers, a position [m] and a unit quaternion, found '" + decision.text +
-                       "'");
-    }
+    checkText(decision, format, camera, place);
     if (decision.kind == DecisionKind::stopped) lines.note = "recording stopped before the run did: " + decision.text;
     lines.ended = decision.kind == DecisionKind::end;
     lines.decisions.push_back(decision);
@@ -119,23 +147,40 @@ bool isWholePng(const std::string& path) {
   return std::memcmp(bytes.data(), last_chunk.data(), last_chunk.size()) == 0;
 }
 
+// Why the frame of this decision is not there whole, with its place; otherwise empty.
+std::string problemOfFrame(const Recording& recording, const Decision& decision) {
+  if (const auto image = archivedImageOf(decision)) return readArchivedImage(archivePath(recording), *image).problem;
+  const std::string path = framePath(recording, decision.time_ns);
+  return isWholePng(path) ? "" : path + ": is missing or cut off";
+}
+
 // Ends the recording where frames are listed and none of them is there: a disk that lost more than it confirmed, or a
 // copy that broke off.
 void endBeforeMissingFrames(DecisionLines& lines, const Recording& recording) {
   std::size_t end = lines.decisions.size();
+  std::string problem;
   for (std::size_t i = lines.decisions.size(); i-- > 0;) {
     const Decision& decision = lines.decisions[i];
     if (decision.kind != DecisionKind::frame) continue;
-    if (isWholePng(framePath(recording, decision.time_ns))) break;
+    const std::string problem_here = problemOfFrame(recording, decision);
+    if (problem_here.empty()) break;
+    problem = problem_here;
     end = i;
   }
   if (end == lines.decisions.size()) return;
-  const Decision& missing = lines.decisions[end];
   lines.ended = false;
-  lines.note += (lines.note.empty() ? "" : "; ") + framePath(recording, missing.time_ns) +
-                ": is missing or cut off, and so is all that follows; the recording ends before frame " +
-                std::to_string(missing.index);
+  lines.note += (lines.note.empty() ? "" : "; ") + problem +
+                ", and so it is with all that follow; the recording ends before frame " +
+                std::to_string(lines.decisions[end].index);
   lines.decisions.resize(end);
+}
+
+DecodedImage readArchivedFrame(const std::string& path, const ArchivedImage& where, const ExpectedSize& expected) {
+  const ArchivedBytes file = readArchivedImage(path, where);
+  if (!file.problem.empty()) return {{}, file.problem};
+  DecodedImage image = decodeGreyImage(file.bytes, expected);
+  if (!image.problem.empty()) image.problem.insert(0, placeInArchive(path, where));
+  return image;
 }
 
 void take(const Decision& decision, Recording& recording) {
@@ -143,9 +188,9 @@ void take(const Decision& decision, Recording& recording) {
   switch (decision.kind) {
     case DecisionKind::frame:
     case DecisionKind::unreadable:
-      recording.frames.push_back({decision.index, decision.time_ns, decision.text});
-      if (decision.kind == DecisionKind::unreadable && decision.text.empty()) {
-        recording.frames.back().problem = "the camera's frame was unreadable";
+      recording.frames.push_back({decision.index, decision.time_ns, "", archivedImageOf(decision)});
+      if (decision.kind == DecisionKind::unreadable) {
+        recording.frames.back().problem = decision.text.empty() ? "the camera's frame was unreadable" : decision.text;
       }
       break;
     case DecisionKind::dropped:
@@ -196,11 +241,12 @@ bool isRecording(const std::string& folder) { return isFile(folder + "/" + recor
 Recording readRecording(const std::string& folder) {
   Recording recording;
   recording.folder = folder;
-  recording.program_version = readProgramVersion(folder + "/" + recording_description_name);
+  const Versions versions = readVersions(folder + "/" + recording_description_name);
+  recording.program_version = versions.program;
   recording.configuration_path = folder + "/" + recording_configuration_name;
   checkFile(recording.configuration_path, 1 << 24);
   recording.camera = readCalibration(folder + "/" + tum_camera_name);
-  DecisionLines lines = readDecisionLines(folder + "/" + recording_decisions_name);
+  DecisionLines lines = readDecisionLines(folder + "/" + recording_decisions_name, versions.format, recording.camera);
   endBeforeMissingFrames(lines, recording);
   for (const Decision& decision : lines.decisions) take(decision, recording);
   Decisions& decisions = recording.decisions;
@@ -227,9 +273,10 @@ std::optional<Frame> RecordingSource::next() {
   frame.time_ns = recorded.time_ns;
   frame.problem = recorded.problem;
   if (!frame.problem.empty()) return frame;
-  const std::string path = framePath(recording_, recorded.time_ns);
-  DecodedImage image = readGreyImage(
-      path, {{recording_.camera.width, recording_.camera.height}, recording_.folder + "/" + tum_camera_name + " says"});
+  const ExpectedSize expected{{recording_.camera.width, recording_.camera.height},
+                              recording_.folder + "/" + tum_camera_name + " says"};
+  DecodedImage image = recorded.image ? readArchivedFrame(archivePath(recording_), *recorded.image, expected)
+                                      : readGreyImage(framePath(recording_, recorded.time_ns), expected);
   frame.problem = image.problem;
   frame.grey = std::move(image.grey);
   return frame;

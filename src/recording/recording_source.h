@@ -9,6 +9,7 @@
 
 #include "frames/frame_source.h"
 #include "pipeline/run_decisions.h"
+#include "recording/frame_archive.h"
 
 namespace edgeslam {
 
@@ -60,7 +61,8 @@ RunDecisions runDecisions(const Decisions& recorded);
 struct RecordedFrame {
   std::int64_t index = 0;  // over all frames of the camera, dropped ones included
   std::int64_t time_ns = 0;
-  std::string problem;  // why the live run could not read it; empty otherwise
+  std::string problem;                 // why the live run could not read it; empty otherwise
+  std::optional<ArchivedImage> image;  // in rgb.tar; none: it is a file in rgb/
 };
 
 struct Recording {

@@ -15,10 +15,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto sync_interval = std::chrono::seconds(1);
-constexpr auto drain_time = std::chrono::seconds(1);
+constexpr auto drain_time = std::chrono::seconds(3);
 constexpr auto idle_time = std::chrono::milliseconds(10);
 constexpr int nice_level = 5;
-constexpr std::size_t unhurried_backlog = 8;  // entries that wait: more, and frames are packed no more
+constexpr std::size_t unhurried_backlog = 2;  // entries that wait: more, and frames are packed no more
 
 // On Linux a thread has a nice level of its own. Lowering the priority needs no privilege, nor does leaving the
 // real-time scheduling that the thread which starts this one may have.
@@ -27,6 +27,14 @@ void lowerPriority() {
   pthread_setschedparam(pthread_self(), SCHED_OTHER, &usual);
   pthread_setname_np(pthread_self(), "recorder");
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice_level);
+}
+
+std::int64_t bytesOf(const std::shared_ptr<const FrameImages>& images) {
+  std::size_t bytes = 0;
+  if (images) {
+    for (const cv::Mat& level : images->pyramid.levels) bytes += level.total() * level.elemSize();
+  }
+  return static_cast<std::int64_t>(bytes);
 }
 
 }  // namespace
@@ -41,8 +49,8 @@ RecordingEntry unreadableFrameEntry(std::int64_t index, std::int64_t time_ns, st
 }
 
 RecordingThread::RecordingThread(const std::string& folder, const RecordingDescription& description,
-                                 const RecordingLimits& limits, std::size_t capacity)
-    : queue_(capacity) {
+                                 const RecordingLimits& limits, const QueueCapacity& capacity)
+    : queue_(capacity.entries), most_image_bytes_(capacity.image_bytes) {
   writer_.open(folder, description, limits);
   status_ = writer_.status();
   thread_ = std::thread([this] { run(); });
@@ -51,10 +59,14 @@ RecordingThread::RecordingThread(const std::string& folder, const RecordingDescr
 RecordingThread::~RecordingThread() { stop(); }
 
 bool RecordingThread::post(RecordingEntry entry) noexcept {
-  if (queue_.push({std::move(entry), lost_before_next_})) {
+  const std::int64_t bytes = bytesOf(entry.images);
+  const std::int64_t before = image_bytes_.fetch_add(bytes, std::memory_order_relaxed);
+  const bool has_room = bytes == 0 || before == 0 || before + bytes <= most_image_bytes_;
+  if (has_room && queue_.push({std::move(entry), lost_before_next_, bytes})) {
     lost_before_next_ = 0;
     return true;
   }
+  image_bytes_.fetch_sub(bytes, std::memory_order_relaxed);
   ++lost_before_next_;
   lost_.fetch_add(1, std::memory_order_relaxed);
   return false;
@@ -99,6 +111,7 @@ void RecordingThread::writeUntilStopped() {
     if (queue_.pop(queued)) {
       write(queued);
       queued.entry.images.reset();
+      image_bytes_.fetch_sub(queued.image_bytes, std::memory_order_relaxed);
       publishStatus();
     } else if (stopping) {
       return;
@@ -117,7 +130,7 @@ void RecordingThread::write(const QueuedEntry& queued) {
   writeLost(queued.lost_before);
   const RecordingEntry& entry = queued.entry;
   if (entry.kind == DecisionKind::frame) {
-    const FrameCode code = queue_.read_available() > unhurried_backlog ? FrameCode::stored : FrameCode::packed;
+    const FrameCode code = queue_.read_available() > unhurried_backlog ? FrameCode::plain : FrameCode::packed;
     writer_.writeFrame(entry.index, entry.time_ns, entry.images->pyramid.levels[0], code);
   } else if (entry.kind == DecisionKind::inertia) {
     for (std::int64_t i = 0; i < entry.number; ++i) {

@@ -1,5 +1,6 @@
 // The flight recorder's thread: takes what the run hands over and writes it, without ever making the run wait. Where it
-// falls behind, it writes frames as they are, which takes a tenth of the work and twice the room.
+// falls behind, it writes frames as they are, which takes a tenth of the work and twice the room. What waits is bounded
+// by the memory that it holds.
 #pragma once
 
 #include <array>
@@ -34,13 +35,18 @@ struct RecordingEntry {
 // Cuts off what does not fit.
 RecordingEntry unreadableFrameEntry(std::int64_t index, std::int64_t time_ns, std::string_view reason);
 
+// Of images of 640 x 480 pixels these are 4 s at 60 frames/s and 8 s at 30. One image may always wait.
+struct QueueCapacity {
+  std::size_t entries = 1024;
+  std::int64_t image_bytes = 100 << 20;  // with all levels of their pyramids
+};
+
 class RecordingThread {
  public:
   // Opens the recording (RecordingWriter::open, which may throw InputError) and starts the thread, at nice 5.
-  // `capacity`: entries that may wait, each frame among them holding its image; the default is 1 s of frames with
-  // inertia at 1 kHz, and 2 s without it.
+  // `capacity`: what may wait for it.
   RecordingThread(const std::string& folder, const RecordingDescription& description,
-                  const RecordingLimits& limits = {}, std::size_t capacity = 128);
+                  const RecordingLimits& limits = {}, const QueueCapacity& capacity = {});
   // stop()
   ~RecordingThread();
   RecordingThread(const RecordingThread&) = delete;
@@ -56,7 +62,7 @@ class RecordingThread {
   // How it goes, entries lost in post() included. Takes a lock, which post() does not: for the thread that reports.
   RecordingStatus status() const;
 
-  // Writes for up to 1 s what still waits, then the clean end, and joins the thread (a write that the disk holds up is
+  // Writes for up to 3 s what still waits, then the clean end, and joins the thread (a write that the disk holds up is
   // waited for). What was left is a gap of the recording and told. Call it when post() is called no more; further calls
   // only return the status.
   RecordingStatus stop();
@@ -65,6 +71,7 @@ class RecordingThread {
   struct QueuedEntry {
     RecordingEntry entry;
     std::int64_t lost_before = 0;  // entries lost between the one before and this one
+    std::int64_t image_bytes = 0;
   };
 
   void run();
@@ -75,8 +82,10 @@ class RecordingThread {
   void publishStatus();
 
   boost::lockfree::spsc_queue<QueuedEntry> queue_;
-  std::int64_t lost_before_next_ = 0;  // the posting thread's
-  std::atomic<std::int64_t> lost_{0};  // in post(), ever
+  const std::int64_t most_image_bytes_;
+  std::atomic<std::int64_t> image_bytes_{0};  // in the queue
+  std::int64_t lost_before_next_ = 0;         // the posting thread's
+  std::atomic<std::int64_t> lost_{0};         // in post(), ever
   std::atomic<bool> stop_{false};
 
   RecordingWriter writer_;         // from here on the recorder's thread alone

@@ -13,9 +13,7 @@ namespace edgeslam {
 namespace {
 
 constexpr std::int64_t block_bytes = 4096;           // of the disk
-constexpr std::int64_t folder_entry_bytes = 64;      // what a file takes in its folder
 constexpr std::int64_t closing_bytes = block_bytes;  // kept for the line that says why recording stopped
-constexpr std::size_t most_waiting_frames = 128;     // each is an open file
 constexpr std::size_t most_waiting_bytes = 1 << 16;  // of lines
 
 std::int64_t wholeBlocks(std::size_t bytes) {
@@ -26,7 +24,7 @@ std::string formatDescription(const std::string& program_version) {
   std::string version = program_version.substr(0, 200);
   std::replace_if(
       version.begin(), version.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return "# Edge SLAM recording. Frames: rgb.txt; what the run did with them: decisions.txt.\nformat " +
+  return "# Edge SLAM recording. Frames: rgb.tar; what the run did with them: decisions.txt.\nformat " +
          std::to_string(recording_format_version) + "\nprogram " + version + "\n";
 }
 
@@ -58,16 +56,18 @@ void RecordingWriter::open(const std::string& folder, const RecordingDescription
 
 bool RecordingWriter::writeFrame(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey, FrameCode code) {
   if (!status_.recording) return false;
-  const Decision decision{DecisionKind::frame, index, time_ns, 0, ""};
   if (grey.type() != CV_8UC1 || grey.size() != size_) {
     return refuse("frame " + std::to_string(index) + " is not of the camera's size in 8 bits of grey");
   }
+  if (!encodeFrame(grey, code, image_)) return refuse("no memory to encode frame " + std::to_string(index));
+  const std::string_view content(reinterpret_cast<const char*>(image_.data()), image_.size());
+  const Decision decision = frameDecision(
+      index, time_ns, {files_->nextOffset(), static_cast<std::int64_t>(image_.size()), imageChecksum(content)});
   if (std::string problem = order_.add(decision); !problem.empty()) return refuse(problem);
-  if (!encodeFrame(grey, code, png_)) return refuse("no memory to encode frame " + std::to_string(index));
-  const std::int64_t bytes = wholeBlocks(png_.size()) + folder_entry_bytes;
+  const auto bytes = static_cast<std::int64_t>(archive_block + image_.size() + archivePadding(image_.size()));
   if (!keepsLimits(bytes)) return false;
-  const std::string name = tumFrameName(time_ns);
-  if (std::string problem = files_->addFrame(name, png_); !problem.empty()) {
+  const std::string name = formatStamp(time_ns) + fileEnding(code);
+  if (std::string problem = files_->addFrame(name, time_ns, image_); !problem.empty()) {
     end(problem);
     return false;
   }
@@ -77,7 +77,7 @@ bool RecordingWriter::writeFrame(std::int64_t index, std::int64_t time_ns, const
   waiting_list_ += line;
   status_.bytes += static_cast<std::int64_t>(line.size());
   addLine(decision);
-  return files_->waitingFrames() < most_waiting_frames || sync();
+  return true;
 }
 
 bool RecordingWriter::writeDecision(const Decision& decision) {

@@ -79,7 +79,7 @@ class RecordingWriter {
   RecordingStatus status_;
   DecisionOrder order_;
   std::string waiting_decisions_, waiting_list_;  // lines that name what the disk has not confirmed yet
-  std::vector<unsigned char> png_;
+  std::vector<unsigned char> image_;              // file of the frame that is being written
 };
 
 }  // namespace edgeslam

@@ -1,6 +1,7 @@
-// Recordings: decisions.txt, recording.txt and camera.yaml, parted by lines "====", beside frames of 1, 2 and 3 s, the
-// last one cut off. Frames and decisions in an order that a run can have, or one message. Each line of decisions.txt
-// gets its checksum here, but for those that begin with '!'.
+// Recordings: decisions.txt, recording.txt, camera.yaml and rgb.tar, parted by lines "====". Frames and decisions in an
+// order that a run can have, or one message. Each line of decisions.txt gets its checksum here, but for those that
+// begin with '!', and so does an image of rgb.tar whose line ends in '?'. Where rgb.tar is empty it has a frame as PNG,
+// one as PGM, and a PNG cut off. Frames of the earlier formats are those of 1, 2 and 3 s, the last one cut off.
 #include <zlib.h>
 
 #include <algorithm>
@@ -14,14 +15,27 @@ namespace {
 
 using namespace edgeslam;
 
-std::string withChecksums(std::string_view lines) {
+// A '?' at the end of a frame's line becomes the checksum of what lies at its place in the archive.
+std::string withImageChecksum(std::string_view line, std::string_view archive) {
+  std::string text(line);
+  if (text.empty() || text.back() != '?') return text;
+  unsigned long offset = 0, image_size = 0;
+  if (std::sscanf(text.c_str(), "frame %*s %*s %lu %lu ?", &offset, &image_size) != 2 || offset > archive.size())
+    return text;
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "%08x", imageChecksum(archive.substr(offset, image_size)));
+  text.pop_back();
+  return text + digits;
+}
+
+std::string withChecksums(std::string_view lines, std::string_view archive) {
   std::string text;
   while (!lines.empty()) {
     const std::size_t end = std::min(lines.find('\n'), lines.size());
-    const std::string_view line = lines.substr(0, end);
+    const std::string line = withImageChecksum(lines.substr(0, end), archive);
     lines.remove_prefix(std::min(end + 1, lines.size()));
     if (!line.empty() && line.front() == '!') {
-      text.append(line.substr(1)).append("\n");
+      text.append(line, 1).append("\n");
       continue;
     }
     char digits[16];
@@ -36,6 +50,7 @@ std::string withChecksums(std::string_view lines) {
 class RecordingFolder : public MemoryFolder {
  public:
   RecordingFolder();
+  std::string archive;
 };
 
 RecordingFolder::RecordingFolder() {
@@ -45,6 +60,12 @@ RecordingFolder::RecordingFolder() {
   write("rgb/1.000000000.png", content);
   write("rgb/2.000000000.png", content);
   write("rgb/3.000000000.png", content.substr(0, content.size() / 2));
+  const std::string pgm = "P5\n16 16\n255\n" + std::string(256, 'x');
+  archive = std::string(archive_block, '\0') + content;
+  archive.resize(2 * archive_block);
+  archive += std::string(archive_block, '\0') + pgm;
+  archive.resize(4 * archive_block);
+  archive += std::string(archive_block, '\0') + content.substr(0, content.size() / 2);
   write(recording_configuration_name, "");
 }
 
@@ -94,9 +115,11 @@ void readFrames(Recording recording) {
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const RecordingFolder folder;
-  const auto files = splitFiles(data, size, 3);
+  const auto files = splitFiles(data, size, 4);
   requireReadBack(files[0].substr(0, files[0].find('\n')));
-  folder.write(recording_decisions_name, withChecksums(files[0]));
+  const std::string_view archive = files[3].empty() ? folder.archive : files[3];
+  folder.write(recording_decisions_name, withChecksums(files[0], archive));
+  folder.write(frame_archive_name, archive);
   folder.write(recording_description_name, files[1]);
   folder.write(tum_camera_name, files[2]);
   try {

@@ -71,6 +71,8 @@ SOURCES = {
 # Of sources that are mostly about other things: the literals that are pieces of reasons.
 SINGLE_PIECES = {
     "src/frames/folder_source.cpp": ["those before are"],
+    "src/recording/frame_archive.cpp": [
+        ": at byte ", "the frame is cut off", "the frame cannot be read", "the frame is damaged: its checksum is another one"],
     "src/recording/recording_source.cpp": ["the camera's frame was unreadable", " says"],
     "src/frames/video_source.cpp": ["cannot be decoded", ": frame ", "those before are"],
 }

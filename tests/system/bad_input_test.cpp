@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "recording/recording_layout.h"
 #include "system/program.h"
 
 namespace edgeslam {
@@ -272,6 +273,101 @@ TEST_F(BadInput, EvaluateNamesFileAndLine) {
   expectRefusal(runProgram({"evaluate", broken, truth}), {broken + ":2"});
   const std::string apart = folder_.write("apart.txt", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n");
   expectRefusal(runProgram({"evaluate", apart, truth}), {"same clock"});
+}
+
+// A recording of the sequence, whose files are spoilt.
+class BadRecording : public BadInput {
+ protected:
+  void SetUp() override {
+    BadInput::SetUp();
+    const Outcome live = runProgram({"replay", sequence(), "--realtime", "--record", recording(), "--output",
+                                     folder_.path("live"), "--drawings", "0"});
+    ASSERT_NE(live.messages.find("ended with the run"), std::string::npos) << live.messages;
+    std::ifstream lines(recording("decisions.txt"));
+    for (std::string line; std::getline(lines, line);) {
+      lines_.push_back(line);
+      if (decisionIn(line).kind == DecisionKind::frame) frame_lines_.push_back(lines_.size());
+    }
+    ASSERT_GE(frame_lines_.size(), 50U);
+  }
+
+  static Decision decisionIn(const std::string& line) { return parseDecision(*undamagedDecision(line), ""); }
+
+  std::string recording(const std::string& file = "") const {
+    return folder_.path(file.empty() ? "recording" : "recording/" + file);
+  }
+
+  Outcome replayRecording() const {
+    return runProgram({"replay", recording(), "--output", result(), "--drawings", "0"});
+  }
+
+  // Of the recording's frame `number`, from 0: some frames of the sequence may have been dropped.
+  Decision frame(std::size_t number) const { return decisionIn(lines_[frame_lines_[number] - 1]); }
+  ArchivedImage imageOf(std::size_t number) const { return *archivedImageOf(frame(number)); }
+  std::string lineOf(std::size_t number) const {
+    return recording("decisions.txt:" + std::to_string(frame_lines_[number]) + ": ");
+  }
+  std::string placeOf(std::size_t number) const {
+    return recording("rgb.tar: at byte " + std::to_string(imageOf(number).offset) + ": ");
+  }
+
+  // Says that the image of a frame is in another place, in a line whose checksum is right.
+  void moveImage(std::size_t number, const ArchivedImage& image) const {
+    std::vector<std::string> lines = lines_;
+    std::string& line = lines[frame_lines_[number] - 1];
+    line = formatDecision(frameDecision(frame(number).index, frame(number).time_ns, image));
+    line.pop_back();
+    std::ofstream file(recording("decisions.txt"));
+    for (const std::string& any : lines) file << any << "\n";
+  }
+
+  std::vector<std::string> lines_;
+  std::vector<std::size_t> frame_lines_;  // their numbers, from 1
+};
+
+TEST_F(BadRecording, AnImageThatCannotBeThatLargeIsRefused) {
+  ArchivedImage image = imageOf(20);
+  image.size = std::int64_t{1} << 60;
+  moveImage(20, image);
+  const Outcome outcome = replayRecording();
+  expectRefusal(outcome, {lineOf(20), "bytes at most"});
+  EXPECT_LT(outcome.peak_memory_kb, 200'000);
+}
+
+TEST_F(BadRecording, AnImageInAnotherOneIsRefused) {
+  ArchivedImage image = imageOf(20);
+  image.offset = imageOf(19).offset + 1;
+  moveImage(20, image);
+  expectRefusal(replayRecording(), {lineOf(20), "must increase"});
+}
+
+TEST_F(BadRecording, WithoutAnyWholeFrameItIsRefused) {
+  fs::resize_file(recording("rgb.tar"), static_cast<std::uintmax_t>(imageOf(0).offset + 10));
+  expectRefusal(replayRecording(), {recording("rgb.tar: at byte 512: "), "cut off", "holds no frames"});
+  fs::remove(recording("rgb.tar"));
+  expectRefusal(replayRecording(), {recording("rgb.tar: no such file")});
+}
+
+TEST_F(BadRecording, ItIsUsedUpToWhereItIsCutOff) {
+  fs::resize_file(recording("rgb.tar"), static_cast<std::uintmax_t>(imageOf(40).offset + 10));
+  const Outcome outcome = replayRecording();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.messages;
+  EXPECT_NE(outcome.messages.find(placeOf(40) + "the frame is cut off"), std::string::npos) << outcome.messages;
+  const std::string end = "ends before frame " + std::to_string(frame(40).index);
+  EXPECT_NE(outcome.messages.find(end), std::string::npos) << outcome.messages;
+}
+
+TEST_F(BadRecording, ADamagedFrameIsToldWithItsPlaceAndSkipped) {
+  std::fstream archive(recording("rgb.tar"), std::ios::in | std::ios::out | std::ios::binary);
+  archive.seekp(imageOf(20).offset + 1000).put('x').put('y').put('z');
+  archive.close();
+  const Outcome outcome = replayRecording();
+  EXPECT_EQ(outcome.exit_code, 0);
+  ASSERT_EQ(outcome.failures().size(), 1U) << outcome.messages;
+  const std::string told = placeOf(20) + "the frame is damaged: its checksum is another one";
+  EXPECT_NE(outcome.failures()[0].find(told), std::string::npos) << outcome.messages;
+  const auto summary = nlohmann::json::parse(fileContent(result("summary.json")));
+  EXPECT_EQ(summary["frames"]["unreadable"].get<int>(), 1);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 # Words that stand for something else, and signs of a synopsis: such a command cannot be run as it stands.
 PLACEHOLDER = re.compile(r"[\[\]|]|\.\.\.|(?<![\w./-])[A-Z][A-Z]+(?:\.html)?(?![\w./-])|(?<![\w.-])N(?![\w.-])")
 # Preparation by the shell that stands between commands; run as it is.
-SHELL_LINE = re.compile(r"^(?:cp|cut|grep) ")
+SHELL_LINE = re.compile(r"^(?:cp|cut|grep|mkdir|tar) ")
 SECTION = re.compile(r"^(?:[a-z_]+): ?(?:\{.*\}|[^{]*)(?:\s+#.*)?$")
 
 

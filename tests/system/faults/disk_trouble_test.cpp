@@ -88,7 +88,7 @@ TEST_F(DiskOfADaemon, WhereSlowCostsFramesOfTheRecordingAndNoPoses) {
   folder_.write("broken", "");
   const Heard before = robot_->heard();
   ASSERT_TRUE(robot_->hears([&](const Heard& heard) { return heard.statuses.size() > before.statuses.size() + 4; }));
-  // The recorder can write 7 frames a second and has room for two seconds of frames.
+  // The recorder can write 6 frames a second. Of the others, which wait in the end, it writes those of three seconds.
   const Heard after = robot_->heard();
   const std::int64_t captured = after.statuses.back().frames_captured - before.statuses.back().frames_captured;
   const std::int64_t dropped = after.statuses.back().frames_dropped - before.statuses.back().frames_dropped;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <functional>
 
@@ -13,6 +14,7 @@
 #include "frames/frame_source.h"
 #include "map/saved_map.h"
 #include "recording/open_frame_source.h"
+#include "recording/recording_thread.h"
 #include "system/faults/file_faults.h"
 #include "unit/map/made_map.h"
 #include "unit/recording/made_recording.h"
@@ -143,6 +145,37 @@ TEST_F(FailingDisk, ARecordingIsReadableAsFarAsItReaches) {
                      EXPECT_TRUE(!recording.decisions.complete || recording.frames.size() == frames);
                      expectFramesAsMade(recording, madeFrame);
                    });
+}
+
+// Each of the three writes of a frame takes 50 ms.
+TEST_F(FailingDisk, ASlowOneIsNotWaitedForAndWhatWasLeftIsTold) {
+  constexpr int frames = 200;
+  const TemporaryFolder room;
+  auto images = std::make_shared<FrameImages>();
+  images->pyramid.levels.push_back(madeFrame(0));
+  RecordingThread thread(room.path("recording"), madeDescription(), noLimits());
+  FaultPlan plan;
+  plan.under = room.path();
+  plan.fault = Fault::slow;
+  setFaults(plan);
+  for (int i = 0; i < frames; ++i) {
+    RecordingEntry entry;
+    entry.index = i;
+    entry.time_ns = madeTime(i);
+    entry.images = images;
+    EXPECT_TRUE(thread.post(entry));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const RecordingStatus status = thread.stop();
+  setFaults({});
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  EXPECT_GT(status.not_recorded, 0);
+  EXPECT_EQ(status.frames + status.not_recorded, frames);
+  EXPECT_NE(status.message.find("without " + std::to_string(status.not_recorded)), std::string::npos);
+  const Recording recording = readRecording(room.path("recording"));
+  EXPECT_EQ(static_cast<std::int64_t>(recording.frames.size()), status.frames);
+  EXPECT_EQ(recording.decisions.not_recorded, status.not_recorded);
+  EXPECT_EQ(images.use_count(), 1);
 }
 
 TEST_F(FailingDisk, FramesOfACameraAreReadableAsFarAsTheyAreListed) {

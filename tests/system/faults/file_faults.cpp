@@ -114,7 +114,7 @@ int errorOf(Fault fault, Step step) {
     case Fault::no_space:
       return step == Step::make || step == Step::write || step == Step::sync || step == Step::rename ? ENOSPC : 0;
     case Fault::read_only:
-      return step == Step::make || step == Step::rename || step == Step::remove || step == Step::resize ? EROFS : 0;
+      return step == Step::write || step == Step::close ? 0 : EROFS;
     case Fault::broken:
       return step == Step::write || step == Step::sync || step == Step::resize ? EIO : 0;
     default:

@@ -13,10 +13,10 @@ enum class Fault {
   cut_before,  // the process is killed before step `first` happens
   cut_within,  // after half the bytes, where the step writes some; otherwise right after it
   no_space,    // from step `first` on what needs space fails with ENOSPC
-  read_only,   // from step `first` on what changes a folder fails with EROFS
-  broken,      // from step `first` on what transfers data fails with EIO
-  slow,        // from step `first` on each takes 50 ms
-  stuck        // from step `first` on none ends while `while_exists` is there
+  read_only,  // from step `first` on what changes a folder or asks the disk to confirm fails with EROFS, as ext4 has it
+  broken,     // from step `first` on what transfers data fails with EIO
+  slow,       // from step `first` on each takes 50 ms
+  stuck       // from step `first` on none ends while `while_exists` is there
 };
 
 struct FaultPlan {

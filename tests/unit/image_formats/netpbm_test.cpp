@@ -24,6 +24,20 @@ TEST(Netpbm, IsReadAsOpenCvReadsIt) {
   }
 }
 
+TEST(Netpbm, WhatWasEncodedIsReadBackHereAndByOpenCv) {
+  for (const cv::Size size : {cv::Size(1, 1), cv::Size(33, 17), cv::Size(640, 480)}) {
+    cv::Mat wide(size.height, size.width + 5, CV_8U);
+    cv::RNG(3).fill(wide, cv::RNG::UNIFORM, 0, 256);
+    const cv::Mat image = wide.colRange(2, 2 + size.width);  // rows with others between them
+    const std::vector<unsigned char> bytes = encodePgm(image);
+    EXPECT_LT(bytes.size(), image.total() + 20);
+    const cv::Mat read = decodeNetpbm({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    ASSERT_EQ(read.size(), size);
+    EXPECT_EQ(cv::norm(read, image, cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), image, cv::NORM_INF), 0);
+  }
+}
+
 TEST(Netpbm, OtherRangesAreScaled) {
   EXPECT_EQ(decodeNetpbm("P5 3 1 65535\n\x00\x00\x80\x80\xFF\xFF"s).at<unsigned char>(0, 1), 128);
   const cv::Mat few = decodeNetpbm("P5 # of three\n 3 1\n 2\n\x00\x01\x02"s);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <map>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -60,6 +61,27 @@ inline cv::Mat flatFrame(int i) { return cv::Mat(made_height, made_width, CV_8UC
 
 inline bool same(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
+}
+
+// The files in an archive as POSIX has it, up to the first one that is not whole.
+inline std::map<std::string, std::string> unpacked(const std::string& archive) {
+  constexpr std::size_t block = 512;
+  std::map<std::string, std::string> files;
+  for (std::size_t at = 0; at + block <= archive.size();) {
+    const std::string header = archive.substr(at, block);
+    unsigned sum = 0;
+    for (std::size_t i = 0; i < block; ++i) {
+      sum += i >= 148 && i < 156 ? ' ' : static_cast<unsigned char>(header[i]);
+    }
+    const bool is_header =
+        header.compare(257, 6, "ustar\0", 6) == 0 && sum == std::stoul(header.substr(148, 6), nullptr, 8);
+    if (!is_header) throw std::runtime_error("no header at byte " + std::to_string(at));
+    const std::size_t size = std::stoul(header.substr(124, 11), nullptr, 8);
+    if (size > archive.size() - at - block) break;
+    files[header.c_str()] = archive.substr(at + block, size);
+    at += block + (size + block - 1) / block * block;
+  }
+  return files;
 }
 
 // 10 frames processed (0 1 2 4 5 6 8 9 10 11), one dropped (3), one unreadable (7); lines of all these kinds.

@@ -17,7 +17,7 @@ Decision readLine(const std::string& line) {
 
 TEST(RecordingLayout, EveryKindOfLineIsReadAsItWasWritten) {
   const std::vector<Decision> decisions{{DecisionKind::frame, 0, 0, 0, ""},
-                                        {DecisionKind::frame, largest, largest, 0, ""},
+                                        {DecisionKind::frame, largest, largest, 0, "512 307215 0123abcd"},
                                         {DecisionKind::dropped, 3, 1305031102175304123, 0, ""},
                                         {DecisionKind::unreadable, 7, 5, 0, "a: reason, of  words "},
                                         {DecisionKind::unreadable, 7, 5, 0, ""},
@@ -38,6 +38,37 @@ TEST(RecordingLayout, EveryKindOfLineIsReadAsItWasWritten) {
     EXPECT_EQ(read.number, decision.number);
     EXPECT_EQ(read.text, decision.text);
   }
+}
+
+TEST(RecordingLayout, WhereAnImageLiesIsReadAsItWasWritten) {
+  for (const ArchivedImage& image :
+       {ArchivedImage{512, 307215, 0xFFFFFFFFU}, ArchivedImage{0, 1, 0}, ArchivedImage{largest, largest, 0x1234U}}) {
+    const Decision read = readLine(formatDecision(frameDecision(5, 7, image)));
+    EXPECT_EQ(read.index, 5);
+    EXPECT_EQ(read.time_ns, 7);
+    const std::optional<ArchivedImage> back = archivedImageOf(read);
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->offset, image.offset);
+    EXPECT_EQ(back->size, image.size);
+    EXPECT_EQ(back->checksum, image.checksum);
+  }
+  for (const char* text :
+       {"", "1", "1 2", "1 2 0123abc", "1 2 0123abcde", "1 2 0123abcg", "1 2 -123abcd", "1 2 0x23abcd", "-1 2 0123abcd",
+        "1 0 0123abcd", "1 -2 0123abcd", "1 2.5 0123abcd", "1 2 0123abcd 4", "1 99999999999999999999 0123abcd"}) {
+    EXPECT_FALSE(archivedImageOf({DecisionKind::frame, 5, 7, 0, text})) << text;
+  }
+  EXPECT_FALSE(archivedImageOf({DecisionKind::unreadable, 5, 7, 0, "1 2 0123abcd"}));
+}
+
+TEST(RecordingLayout, ImagesDoNotLieInEachOther) {
+  DecisionOrder order;
+  EXPECT_EQ(order.add(frameDecision(0, 0, {512, 100, 0})), "");
+  EXPECT_NE(order.add(frameDecision(1, 1, {611, 100, 0})).find("611"), std::string::npos);
+  EXPECT_NE(order.add(frameDecision(1, 1, {0, 100, 0})), "");
+  EXPECT_NE(order.add(frameDecision(0, 1, {5000, 100, 0})), "") << "its index";
+  EXPECT_EQ(order.add(frameDecision(1, 1, {612, 100, 0})), "") << "refused ones left the order as it was";
+  EXPECT_EQ(order.add(frameDecision(2, 2, {largest, largest, 0})), "");
+  EXPECT_NE(order.add(frameDecision(3, 3, {largest, 1, 0})), "");
 }
 
 TEST(RecordingLayout, WhatAnInertialUnitMeasuredKeepsItsLastBit) {
@@ -85,7 +116,6 @@ TEST(RecordingLayout, LinesOfOtherFormsAreToldWithTheirPlace) {
                            " ",
                            "frame",
                            "frame 1",
-                           "frame 1 2 3",
                            "frame -1 2",
                            "frame 1 -2",
                            "frame 1 2.5",

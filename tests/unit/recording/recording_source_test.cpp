@@ -1,6 +1,8 @@
 #include "recording/recording_source.h"
 
+#include <cstdlib>
 #include <random>
+#include <sstream>
 
 #include "frames/folder_source.h"
 #include "frames/mask_file.h"
@@ -20,6 +22,36 @@ class RecordingSourceTest : public TestInMemory {
   Recording readWith(const std::string& decisions) const {
     folder_.write("recording/decisions.txt", decisions);
     return readRecording(path_);
+  }
+
+  // The first frame's line.
+  std::string start() const { return whole_.substr(0, whole_.find('\n') + 1); }
+
+  // As the program recorded it before there was an archive: frames are files in rgb/.
+  void makeOld() const {
+    for (const auto& [name, content] : unpacked(fileContent(path_ + "/rgb.tar"))) {
+      folder_.write("recording/" + name, content);
+    }
+    std::filesystem::remove(path_ + "/rgb.tar");
+    std::istringstream lines(whole_);
+    std::string old, line;
+    while (std::getline(lines, line)) {
+      const Decision decision = parseDecision(*undamagedDecision(line), "");
+      old += decision.kind == DecisionKind::frame
+                 ? checked("frame " + std::to_string(decision.index) + " " + std::to_string(decision.time_ns))
+                 : line + "\n";
+    }
+    folder_.write("recording/decisions.txt", old);
+    folder_.write("recording/recording.txt", "format 2\nprogram 0.1.0\n");
+  }
+
+  // Of frame `index`.
+  ArchivedImage placeOf(std::int64_t index) const {
+    const Recording recording = readRecording(path_);
+    for (const RecordedFrame& frame : recording.frames) {
+      if (frame.index == index) return frame.image.value();
+    }
+    throw std::logic_error("no such frame");
   }
 
   // A line as the recorder would write it, whatever it says.
@@ -108,9 +140,10 @@ TEST_F(RecordingSourceTest, IsKnownBeforeATumFolder) {
 }
 
 // What other programs see: a list of files that are all there, and time stamps to the nanosecond.
-TEST_F(RecordingSourceTest, IsATumFolderToOthers) {
+TEST_F(RecordingSourceTest, UnpackedItIsATumFolderToOthers) {
   std::filesystem::remove(path_ + "/recording.txt");
   EXPECT_FALSE(isRecording(path_));
+  ASSERT_EQ(std::system(("tar -x -f " + path_ + "/rgb.tar -C " + path_).c_str()), 0);
   const auto source = openFrameSource(path_);
   EXPECT_EQ(source->kind(), "TUM RGB-D folder");
   int count = 0;
@@ -171,33 +204,118 @@ TEST_F(RecordingSourceTest, ABlockOfZerosEndsTheRecordingThere) {
 }
 
 TEST_F(RecordingSourceTest, HostileLinesAreToldByFileAndLine) {
-  const std::string start = checked("frame 0 " + std::to_string(madeTime(0)));
   for (const std::string text :
        {"frame 1 99999999999999999999", "frame 99999999999999999999 1", "frame -1 5", "frame one two", "frame 0 5",
         "frame 1 5", "dropped 0 5", "update -1 3", "update 3 x", "gap -7", "gap 4000000000000000001", "nonsense",
         "frame", "correction 1", "end of it", "unreadable 0 1 x"}) {
     SCOPED_TRACE(text);
-    expectInputError([&] { readWith(start + checked(text)); }, path_ + "/decisions.txt:2: ");
+    expectInputError([&] { readWith(start() + checked(text)); }, path_ + "/decisions.txt:2: ");
   }
-  expectInputError([&] { readWith(start + checked("update 5 1") + checked("update 4 2")); }, "decisions.txt:3: ");
-  expectInputError([&] { readWith(start + checked("end") + checked("update 5 1")); }, "decisions.txt:3: ", "follow");
-  const std::vector<std::string> lines{checked("frame 1 " + std::to_string(madeTime(1))), start};
-  expectInputError([&] { readWith(lines[0] + lines[1]); }, "decisions.txt:2: ", "must increase");
+  expectInputError([&] { readWith(start() + checked("update 5 1") + checked("update 4 2")); }, "decisions.txt:3: ");
+  expectInputError([&] { readWith(start() + checked("end") + checked("update 5 1")); }, "decisions.txt:3: ", "follow");
+  const std::string second = checked("frame 1 " + std::to_string(madeTime(1)) + " 512 9 00000000");
+  expectInputError([&] { readWith(second + start()); }, "decisions.txt:2: ", "must increase");
+}
+
+TEST_F(RecordingSourceTest, HostilePlacesAreToldByFileAndLine) {
+  const std::string frame = "frame 1 " + std::to_string(madeTime(1));
+  const ArchivedImage first = placeOf(0);
+  for (const std::string text :
+       {"", " ", " 5000", " 5000 700", " 5000 700 0123456", " 5000 700 01234567 8", " 5000 0 01234567",
+        " -5000 700 01234567", " 5000 70000 01234567", " 5000 4000000000000000000 01234567", " 5000 700 ghijklmn"}) {
+    SCOPED_TRACE(text);
+    expectInputError([&] { readWith(start() + checked(frame + text)); }, path_ + "/decisions.txt:2: ",
+                     "OFFSET SIZE CHECKSUM of an image of 32 x 24 pixels in 67072 bytes at most");
+  }
+  const std::string inside = " " + std::to_string(first.offset + 1) + " 5 01234567";
+  expectInputError([&] { readWith(start() + checked(frame + inside)); }, "decisions.txt:2: ", "must increase");
+  for (const char* beyond : {" 4000000000000000000 5 01234567", " 100000 60000 01234567"}) {
+    const Recording recording = readWith(start() + checked(frame + beyond));
+    EXPECT_EQ(recording.frames.size(), 1U);
+    EXPECT_NE(recording.decisions.note.find("rgb.tar: at byte "), std::string::npos) << recording.decisions.note;
+    EXPECT_NE(recording.decisions.note.find("cut off"), std::string::npos) << recording.decisions.note;
+  }
 }
 
 TEST_F(RecordingSourceTest, GapsAreCountedHoweverMany) {
-  const std::string start = checked("frame 0 " + std::to_string(madeTime(0)));
-  const Recording some = readWith(start + checked("gap 3") + checked("gap 4") + checked("end"));
+  const Recording some = readWith(start() + checked("gap 3") + checked("gap 4") + checked("end"));
   EXPECT_EQ(some.decisions.not_recorded, 7);
   EXPECT_FALSE(some.decisions.complete);
   EXPECT_NE(some.decisions.note.find("7 frames or decisions"), std::string::npos);
-  std::string most = start;
+  std::string most = start();
   for (int i = 0; i < 4; ++i) most += checked("gap 4000000000000000000");
   EXPECT_EQ(readWith(most).decisions.not_recorded, std::numeric_limits<std::int64_t>::max());
 }
 
 TEST_F(RecordingSourceTest, FramesMissingAtTheEndEndTheRecordingThere) {
+  const ArchivedImage last = placeOf(9);
+  std::filesystem::resize_file(path_ + "/rgb.tar", static_cast<std::uintmax_t>(last.offset + last.size - 1));
+  const Recording recording = readRecording(path_);
+  ASSERT_EQ(recording.frames.size(), 8U);
+  EXPECT_EQ(recording.frames.back().index, 8);
+  EXPECT_FALSE(recording.decisions.complete);
+  const std::string place = path_ + "/rgb.tar: at byte " + std::to_string(last.offset) + ": ";
+  EXPECT_NE(recording.decisions.note.find(place), std::string::npos) << recording.decisions.note;
+  EXPECT_NE(recording.decisions.note.find("before frame 9"), std::string::npos);
+  expectFramesAsMade(recording, madeFrame);
+}
+
+// A disk that lost what it had confirmed may give zeros in its place.
+TEST_F(RecordingSourceTest, FramesOfZerosAtTheEndEndTheRecordingThere) {
+  std::string archive = fileContent(path_ + "/rgb.tar");
+  std::fill(archive.begin() + placeOf(10).offset + 300, archive.end(), '\0');
+  folder_.write("recording/rgb.tar", archive);
+  const Recording recording = readRecording(path_);
+  EXPECT_EQ(recording.frames.back().index, 9);
+  EXPECT_NE(recording.decisions.note.find("damaged"), std::string::npos) << recording.decisions.note;
+  expectFramesAsMade(recording, madeFrame);
+}
+
+TEST_F(RecordingSourceTest, WithoutItsFramesARecordingIsRefused) {
+  std::filesystem::remove(path_ + "/rgb.tar");
+  expectInputError([&] { openFrameSource(path_); }, path_ + ": the recording holds no frames", "rgb.tar: no such file");
+  folder_.write("recording/rgb.tar", "");
+  expectInputError([&] { openFrameSource(path_); }, "holds no frames", "rgb.tar: at byte 512: the frame is cut off");
+}
+
+TEST_F(RecordingSourceTest, ASingleDamagedFrameIsAProblemAndTheNextOneIsRead) {
+  std::string archive = fileContent(path_ + "/rgb.tar");
+  for (const int index : {1, 4}) archive[static_cast<std::size_t>(placeOf(index).offset + 100)] ^= 1;
+  const std::string place = path_ + "/rgb.tar: at byte " + std::to_string(placeOf(4).offset) + ": ";
+  folder_.write("recording/rgb.tar", archive);
+  RecordingSource source(readRecording(path_));
+  EXPECT_EQ(source.size(), 11);
+  int problems = 0;
+  while (const std::optional<Frame> frame = source.next()) {
+    const bool bad = frame->index == 1 || frame->index == 4 || frame->index == 7;
+    EXPECT_EQ(frame->problem.empty(), !bad) << frame->problem;
+    EXPECT_EQ(frame->grey.empty(), bad);
+    if (frame->index == 4) {
+      EXPECT_EQ(frame->problem.find(place), 0U) << frame->problem;
+    }
+    problems += bad ? 1 : 0;
+  }
+  EXPECT_EQ(problems, 3);
+}
+
+TEST_F(RecordingSourceTest, RecordingsOfEarlierFormatsAreRead) {
+  const Recording recording = readRecording(path_);
+  makeOld();
+  for (const std::string format : {"1", "2"}) {
+    folder_.write("recording/recording.txt", "format " + format + "\nprogram 0.1\n");
+    const Recording old = readRecording(path_);
+    EXPECT_TRUE(old.decisions.complete) << old.decisions.note;
+    EXPECT_EQ(linesOf(old), linesOf(recording));
+    expectPrefix(old, recording);
+    expectFramesAsMade(old, madeFrame);
+  }
+  expectInputError([&] { readWith(whole_); }, path_ + "/decisions.txt:1: ", "format 2");
+}
+
+TEST_F(RecordingSourceTest, OfEarlierFormatsFramesMissingAtTheEndEndTheRecordingThere) {
+  makeOld();
   const auto file = [this](int i) { return path_ + "/rgb/" + tumFrameName(madeTime(i)); };
+  std::filesystem::remove(file(1));
   std::filesystem::remove(file(11));
   std::filesystem::resize_file(file(10), std::filesystem::file_size(file(10)) - 1);
   std::filesystem::resize_file(file(9), 0);
@@ -207,25 +325,10 @@ TEST_F(RecordingSourceTest, FramesMissingAtTheEndEndTheRecordingThere) {
   EXPECT_FALSE(recording.decisions.complete);
   EXPECT_NE(recording.decisions.note.find(file(9)), std::string::npos) << recording.decisions.note;
   EXPECT_NE(recording.decisions.note.find("before frame 9"), std::string::npos);
-  expectFramesAsMade(recording, madeFrame);
-}
-
-TEST_F(RecordingSourceTest, ASingleMissingOrDamagedFrameIsAProblemAndTheNextOneIsRead) {
-  std::filesystem::remove(path_ + "/rgb/" + tumFrameName(madeTime(1)));
-  const std::string damaged = "recording/rgb/" + tumFrameName(madeTime(4));
-  std::string content = fileContent(folder_.path(damaged));
-  std::fill(content.begin() + 100, content.begin() + 200, '\0');
-  folder_.write(damaged, content);
-  RecordingSource source(readRecording(path_));
-  EXPECT_EQ(source.size(), 11);
-  int problems = 0;
-  while (const std::optional<Frame> frame = source.next()) {
-    const bool bad = frame->index == 1 || frame->index == 4 || frame->index == 7;
-    EXPECT_EQ(frame->problem.empty(), !bad) << frame->problem;
-    EXPECT_EQ(frame->grey.empty(), bad);
-    problems += bad ? 1 : 0;
+  RecordingSource source(recording);
+  for (std::optional<Frame> frame = source.next(); frame; frame = source.next()) {
+    EXPECT_EQ(frame->problem.empty(), frame->index != 1 && frame->index != 7) << frame->problem;
   }
-  EXPECT_EQ(problems, 3);
 }
 
 TEST_F(RecordingSourceTest, AFrameOfAnotherSizeIsAProblem) {
@@ -239,15 +342,15 @@ TEST_F(RecordingSourceTest, AFrameOfAnotherSizeIsAProblem) {
 }
 
 TEST_F(RecordingSourceTest, MissingAndForeignFilesAreTold) {
-  folder_.write("recording/recording.txt", "format 3\nprogram 9\n");
-  expectInputError([&] { readRecording(path_); }, "recording.txt:1", "version 3", "version 1 to 2");
-  folder_.write("recording/recording.txt", "format 1\nprogram 0.1\n");
+  folder_.write("recording/recording.txt", "format 4\nprogram 9\n");
+  expectInputError([&] { readRecording(path_); }, "recording.txt:1", "version 4", "version 1 to 3");
+  folder_.write("recording/recording.txt", "format 3\nprogram 0.1\n");
   EXPECT_EQ(readRecording(path_).program_version, "0.1");
   folder_.write("recording/recording.txt", "");
   expectInputError([&] { readRecording(path_); }, "recording.txt", "format");
   folder_.write("recording/recording.txt", "format 1\ncolour blue\n");
   expectInputError([&] { readRecording(path_); }, "recording.txt:2", "colour");
-  folder_.write("recording/recording.txt", "format 1\nprogram 0.1.0 (of today)\n");
+  folder_.write("recording/recording.txt", "format 3\nprogram 0.1.0 (of today)\n");
   EXPECT_EQ(readRecording(path_).program_version, "0.1.0 (of today)");
   for (const std::string name : {"edgeslam.yaml", "camera.yaml", "decisions.txt"}) {
     const std::string content = fileContent(path_ + "/" + name);

@@ -28,11 +28,14 @@ using MakeFrame = cv::Mat (*)(int);
 
 // Writes frames and updates, with a sync after every seventh frame, until recording ends. Throws where it cannot be
 // opened.
-RecordingStatus writeUntilItEnds(const std::string& folder, const RecordingLimits& limits, int frames, MakeFrame make) {
+RecordingStatus writeUntilItEnds(const std::string& folder, const RecordingLimits& limits, int frames, MakeFrame make,
+                                 int updates_a_third_frame = 1) {
   RecordingWriter writer;
   writer.open(folder, madeDescription(), limits);
   for (int i = 0; i < frames && writer.status().recording; ++i) {
-    if (i % 3 == 0) writer.writeDecision({DecisionKind::update, i, 0, i, ""});
+    for (int k = 0; i % 3 == 0 && k < updates_a_third_frame; ++k) {
+      writer.writeDecision({DecisionKind::update, i, 0, i * updates_a_third_frame + k, ""});
+    }
     writer.writeFrame(i, madeTime(i), make(i));
     if (i % 7 == 6) writer.sync();
   }
@@ -40,7 +43,8 @@ RecordingStatus writeUntilItEnds(const std::string& folder, const RecordingLimit
   return writer.status();
 }
 
-// Empty, or what is wrong: the first frames must be there, as made, and rgb.txt must name nothing but whole files.
+// Empty, or what is wrong: the first frames must be there, as made, and rgb.txt must name nothing but whole files of
+// the archive.
 std::string problemOfPrefix(const std::string& folder, const RecordingStatus& status, MakeFrame make) {
   const Recording recording = readRecording(folder);
   const auto count = static_cast<std::int64_t>(recording.frames.size());
@@ -57,9 +61,15 @@ std::string problemOfPrefix(const std::string& folder, const RecordingStatus& st
     }
   }
   if (fileContent(folder + "/rgb.txt").find("rgb/") == std::string::npos) return "";
-  for (const StampedFile& file : readTumImageList(folder + "/rgb.txt")) {
-    const auto i = static_cast<int>((file.time_ns - madeTime(0)) / (madeTime(1) - madeTime(0)));
-    if (!same(cv::imread(file.path, cv::IMREAD_GRAYSCALE), make(i))) return "listed file " + file.path;
+  const auto files = unpacked(fileContent(folder + "/rgb.tar"));
+  std::vector<StampedFile> list = readTumImageList(folder + "/rgb.txt");
+  if (fileContent(folder + "/rgb.txt").back() != '\n') list.pop_back();  // the line may be torn
+  for (const StampedFile& listed : list) {
+    const auto i = static_cast<int>((listed.time_ns - madeTime(0)) / (madeTime(1) - madeTime(0)));
+    const auto file = files.find(fs::relative(listed.path, folder));
+    if (file == files.end()) return "listed and not there: " + listed.path;
+    const std::vector<unsigned char> bytes(file->second.begin(), file->second.end());
+    if (!same(cv::imdecode(bytes, cv::IMREAD_GRAYSCALE), make(i))) return "listed file " + listed.path;
   }
   return "";
 }
@@ -90,7 +100,7 @@ TEST_F(RecordingWriterTest, TakesAnEmptyFolderAndNoOther) {
     EXPECT_FALSE(writer.sync());
   }
   EXPECT_EQ(fileContent(folder.path("taken/file")), "x");
-  EXPECT_FALSE(fs::exists(folder.path("taken/rgb")));
+  EXPECT_FALSE(fs::exists(folder.path("taken/rgb.tar")));
 }
 
 TEST(RecordingWriter, TellsHowItWent) {
@@ -169,18 +179,19 @@ TEST_F(RecordingWriterTest, SpaceForOthersIsKept) {
   EXPECT_NE(readRecording(folder.path("recording")).decisions.note.find("free"), std::string::npos);
 }
 
-// Frames of noise fail first, flat ones leave that to the lists, and the smallest limits let nothing begin.
+// Frames fail first where there are few decisions, the list of these where there are many, and the smallest limits let
+// nothing begin.
 TEST_F(RecordingWriterTest, AFileThatCannotGrowLeavesAReadableRecording) {
   int not_begun = 0, frames_failed = 0, lists_failed = 0;
-  for (const MakeFrame make : {&madeFrame, &flatFrame}) {
-    for (rlim_t bytes = 0; bytes < 4000; bytes += 83) {
+  for (const int updates : {1, 200}) {
+    for (rlim_t bytes = 0; bytes < 16'000; bytes += 241) {
       SCOPED_TRACE(bytes);
       const TemporaryFolder folder;
       const std::string path = folder.path("a/recording");
       RecordingStatus status;
       try {
         const ResourceLimit limit(RLIMIT_FSIZE, bytes);
-        status = writeUntilItEnds(path, noLimits(), 200, make);
+        status = writeUntilItEnds(path, noLimits(), 200, flatFrame, updates);
       } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find(std::strerror(EFBIG)), std::string::npos) << error.what();
         EXPECT_FALSE(fs::exists(folder.path("a")));
@@ -189,9 +200,9 @@ TEST_F(RecordingWriterTest, AFileThatCannotGrowLeavesAReadableRecording) {
       }
       EXPECT_FALSE(status.recording);
       EXPECT_NE(status.message.find(std::strerror(EFBIG)), std::string::npos) << status.message;
-      const bool frame_failed = status.message.find(".png: ") != std::string::npos;
+      const bool frame_failed = status.message.find("rgb.tar: ") != std::string::npos;
       ++(frame_failed ? frames_failed : lists_failed);
-      expectReadablePrefix(path, status, make);
+      expectReadablePrefix(path, status, flatFrame);
     }
   }
   EXPECT_GT(not_begun, 0);
@@ -199,8 +210,9 @@ TEST_F(RecordingWriterTest, AFileThatCannotGrowLeavesAReadableRecording) {
   EXPECT_GT(lists_failed, 0);
 }
 
-TEST_F(RecordingWriterTest, AFileThatCannotBeOpenedLeavesAReadableRecording) {
-  int not_begun = 0, frames_failed = 0;
+// Later no file is opened.
+TEST_F(RecordingWriterTest, AFileThatCannotBeOpenedIsToldBeforeTheRun) {
+  int not_begun = 0, begun = 0;
   const int lowest = ::dup(STDERR_FILENO);
   ::close(lowest);
   for (int more = 0; more < 9; ++more) {
@@ -209,20 +221,31 @@ TEST_F(RecordingWriterTest, AFileThatCannotBeOpenedLeavesAReadableRecording) {
     RecordingStatus status;
     try {
       const ResourceLimit limit(RLIMIT_NOFILE, static_cast<rlim_t>(lowest + more));
-      status = writeUntilItEnds(folder.path("a/recording"), noLimits(), 200, madeFrame);
+      status = writeUntilItEnds(folder.path("a/recording"), noLimits(), 20, madeFrame);
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(std::strerror(EMFILE)), std::string::npos) << error.what();
       EXPECT_FALSE(fs::exists(folder.path("a")));
       ++not_begun;
       continue;
     }
-    EXPECT_NE(status.message.find(std::strerror(EMFILE)), std::string::npos) << status.message;
-    expectReadablePrefix(folder.path("a/recording"), status, madeFrame);
-    EXPECT_EQ(static_cast<std::int64_t>(readRecording(folder.path("a/recording")).frames.size()), status.frames);
-    ++frames_failed;
+    EXPECT_EQ(readRecording(folder.path("a/recording")).frames.size(), 20U);
+    ++begun;
   }
   EXPECT_GT(not_begun, 0);
-  EXPECT_GT(frames_failed, 0);
+  EXPECT_GT(begun, 0);
+}
+
+TEST_F(RecordingWriterTest, AFolderThatVanishesIsTold) {
+  const TemporaryFolder folder;
+  RecordingWriter writer;
+  writer.open(folder.path("recording"), madeDescription(), noLimits());
+  writer.writeFrame(0, madeTime(0), madeFrame(0));
+  EXPECT_TRUE(writer.sync());
+  fs::remove_all(folder.path("recording"));
+  writer.writeFrame(1, madeTime(1), madeFrame(1));
+  EXPECT_FALSE(writer.sync());
+  EXPECT_NE(writer.status().message.find(folder.path("recording/rgb.tar")), std::string::npos);
+  EXPECT_NE(writer.status().message.find(std::strerror(ENOENT)), std::string::npos) << writer.status().message;
 }
 
 constexpr int cannot_mount = 77;
@@ -247,13 +270,14 @@ int withSmallDisk(const std::string& folder, const std::string& options, const s
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
-// 0, or 1 and a message where something is wrong.
-int fillDisk(const std::string& folder) {
+// 0, or 1 and a message where something is wrong. A disk with room for few files has some for what grows.
+int fillDisk(const std::string& folder, bool only_files_are_few) {
   std::string problem, told;
   try {
-    const RecordingStatus status = writeUntilItEnds(folder, noLimits(), 1000, madeFrame);
-    problem = problemOfPrefix(folder, status, madeFrame);
+    const RecordingStatus status = writeUntilItEnds(folder, noLimits(), 100, madeFrame);
     told = status.message;
+    if (only_files_are_few && readRecording(folder).decisions.complete) return 0;
+    problem = problemOfPrefix(folder, status, madeFrame);
   } catch (const InputError& error) {
     if (fs::exists(folder)) problem = "the folder stays";
     told = error.what();
@@ -269,15 +293,16 @@ TEST_F(RecordingWriterTest, AFullDiskLeavesAReadableRecording) {
          {"size=" + std::to_string(blocks * 4096), "nr_inodes=" + std::to_string(blocks)}) {
       SCOPED_TRACE(options);
       const TemporaryFolder disk;
-      const int result = withSmallDisk(disk.path(), options, [&] { return fillDisk(disk.path("a/recording")); });
+      const bool only_files_are_few = options.find("inodes") != std::string::npos;
+      const int result =
+          withSmallDisk(disk.path(), options, [&] { return fillDisk(disk.path("a/recording"), only_files_are_few); });
       if (result == cannot_mount) GTEST_SKIP() << "no small disk can be mounted here";
       ASSERT_EQ(result, 0);
     }
   }
 }
 
-// What a power cut may do: lists end anywhere after their last sync, or, on a disk that confirms too early, before; and
-// of frames that were not confirmed all, a part or nothing is there.
+// What a power cut may do: files end anywhere after their last sync, or, on a disk that confirms too early, before.
 TEST_F(RecordingWriterTest, APowerCutLeavesWhatWasSynced) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
@@ -287,18 +312,17 @@ TEST_F(RecordingWriterTest, APowerCutLeavesWhatWasSynced) {
     const int synced = static_cast<int>(random() % static_cast<unsigned>(frames + 1));
     RecordingWriter writer;
     writer.open(folder.path("recording"), madeDescription(), noLimits());
+    const std::string archive = folder.path("copy/rgb.tar");
+    std::uintmax_t synced_bytes = 0;
     for (int i = 0; i < frames; ++i) {
       if (i % 3 == 0) writer.writeDecision({DecisionKind::update, i, 0, i, ""});
       writer.writeFrame(i, madeTime(i), madeFrame(i));
-      if (i + 1 == synced) writer.sync();
+      if (i + 1 != synced) continue;
+      writer.sync();
+      synced_bytes = fs::file_size(folder.path("recording/rgb.tar"));
     }
     fs::copy(folder.path("recording"), folder.path("copy"), fs::copy_options::recursive);
-    for (int i = synced; i < frames; ++i) {
-      const std::string file = folder.path("copy/rgb/" + tumFrameName(madeTime(i)));
-      ASSERT_TRUE(fs::exists(file));
-      if (random() % 3 == 0) fs::remove(file);
-      if (random() % 2 == 0 && fs::exists(file)) fs::resize_file(file, random() % fs::file_size(file));
-    }
+    fs::resize_file(archive, synced_bytes + random() % (fs::file_size(archive) - synced_bytes + 1));
     expectReadablePrefix(folder.path("copy"), writer.status(), madeFrame);
     EXPECT_EQ(readRecording(folder.path("copy")).frames.size(), static_cast<std::size_t>(synced));
 
@@ -307,6 +331,10 @@ TEST_F(RecordingWriterTest, APowerCutLeavesWhatWasSynced) {
     fs::resize_file(decisions, fs::file_size(decisions) - cut);
     expectReadablePrefix(folder.path("copy"), writer.status(), madeFrame);
     EXPECT_GE(readRecording(folder.path("copy")).frames.size() + 3, static_cast<std::size_t>(synced));
+
+    fs::resize_file(archive, random() % (synced_bytes + 1));
+    folder.write("copy/rgb.txt", "");
+    expectReadablePrefix(folder.path("copy"), writer.status(), madeFrame);
   }
 }
 
@@ -337,16 +365,6 @@ TEST_F(RecordingWriterTest, AKilledProgramLeavesWhatWasSynced) {
   status.frames = 1'000'000;
   expectReadablePrefix(folder.path("recording"), status, madeFrame);
   EXPECT_GE(readRecording(folder.path("recording")).frames.size(), 35U);
-}
-
-TEST_F(RecordingWriterTest, ManyFramesBetweenSyncsDoNotRunOutOfFiles) {
-  const TemporaryFolder folder;
-  const ResourceLimit limit(RLIMIT_NOFILE, 200);
-  RecordingWriter writer;
-  writer.open(folder.path("recording"), madeDescription(), noLimits());
-  for (int i = 0; i < 400; ++i) EXPECT_TRUE(writer.writeFrame(i, madeTime(i), flatFrame(i)));
-  writer.close();
-  EXPECT_EQ(readRecording(folder.path("recording")).frames.size(), 400U);
 }
 
 }  // namespace
