@@ -31,13 +31,14 @@ struct Looking {
   double well_known;    // standard deviation with which looks that find nothing count
 };
 constexpr Looking looking_for_readout{0.0005, 0, 3, 2, longest_tried_s, 0.001, 0.0003, 0.002};
-// A map that is bent takes up to 4 % even where the calibration is exact (forward motion, bare walls).
-constexpr Looking looking_for_focal_length{0.005, 0.04, 2, 3, 0.02, 0.01, 0.003, 0.01};
+constexpr Looking looking_for_focal_length{0.005, 0.01, 2, 3, 0.02, 0.01, 0.003, 0.01};
+constexpr Looking looking_for_other_focal_length{0.005, 0.03, 3, 3, 0.02, 0.01, 0.003, 0.01};
 constexpr Looking looking_for_distortion{0.0002, 0.004, 0, 3, 0.02, 0.001, 0.0003, 0.004};
 constexpr double alike = 0.25;        // estimates that differ by less of their value agree, too
 constexpr double beyond_doubt = 8;    // standard deviations; only without a least change
 constexpr double least_share = 0.02;  // of the cost: with the right lens some other one explains less ...
 constexpr double least_gain = 2;      // ... and of the cost itself: two standard deviations
+constexpr double clearly_more = 2;    // by itself: of the two a focal length is calibrated rather than a distortion
 constexpr double hardly_any = 0.25;   // of that gain: with others it does not come to more
 
 std::vector<KeyframeId> latestOf(std::vector<KeyframeId> keyframes, int most) {
@@ -120,7 +121,7 @@ bool isToChange(const Looking& looking, const CameraEstimate& estimate, double n
   looks.agreeing = !says_so ? 0 : agrees ? looks.agreeing + 1 : 1;
   looks.last = change;
   looks.steady = !says_so && sigma < looking.well_known ? looks.steady + keyframes : 0;
-  looks.is_settled = looks.steady >= enough;
+  looks.rests = looks.steady >= enough;
   const bool is_beyond_doubt = looking.least == 0 && std::abs(change) > beyond_doubt * sigma;
   looks.was_found = is_beyond_doubt || looks.agreeing >= looking.agreeing_looks;
   return looks.was_found;
@@ -146,18 +147,18 @@ ToldOfLens toldOfLens(const LensEquations& equations, double cost) {
   };
   ToldOfLens told;
   if (both.change.cwiseAbs().maxCoeff() < farthest_believed) {
-    // A distortion that is left out looks like another focal length.
-    Looking beside_distortion = looking_for_focal_length;
-    beside_distortion.least_sigmas = 3;
-    told.focal_length = tells(beside_distortion, focalLengthOf(both), both.gain - distortion.gain);
+    // A distortion that is left out looks like a focal length that is a little off.
+    const bool is_mostly_focal_length = both.gain > clearly_more * distortion.gain;
+    told.focal_length = tells(is_mostly_focal_length ? looking_for_focal_length : looking_for_other_focal_length,
+                              focalLengthOf(both), both.gain - distortion.gain);
     told.distortion = tells(looking_for_distortion, distortionOf(both), both.gain - focal_length.gain);
   }
   if (told.focal_length || told.distortion) return told;
-  if (focal_length.gain > distortion.gain) {
-    told.focal_length = tells(looking_for_focal_length, focalLengthOf(focal_length), focal_length.gain);
-  } else {
-    told.distortion = tells(looking_for_distortion, distortionOf(distortion), distortion.gain);
-  }
+  const bool may_be_focal_length = tells(looking_for_focal_length, focalLengthOf(focal_length), focal_length.gain);
+  const bool may_be_distortion = tells(looking_for_distortion, distortionOf(distortion), distortion.gain);
+  const double times_as_much = may_be_distortion ? clearly_more : 1;
+  told.focal_length = may_be_focal_length && focal_length.gain > times_as_much * distortion.gain;
+  told.distortion = may_be_distortion && !told.focal_length;
   return told;
 }
 
@@ -200,28 +201,48 @@ void CameraFinding::lookAtLens(const LookedAt& at, int keyframes, FoundCamera& f
   if (!waits && !change.isZero(0)) found = withLens(at.camera, found, worthwhile(at, *equations, change));
 }
 
+bool CameraFinding::isSettled() const {
+  const auto stays = [](const CameraLooks& looks) { return looks.is_settled || looks.rests; };
+  return !options_.is_enabled || (stays(readout_) && stays(focal_length_) && stays(distortion_));
+}
+
+bool CameraFinding::isDue(const CameraLooks& looks, int keyframes) const {
+  if (looks.is_settled) return false;
+  if (looks.rests) return keyframes >= options_.interval_resting;
+  const bool was_found = readout_.was_found || focal_length_.was_found || distortion_.was_found;
+  return keyframes >= (was_found ? options_.interval_found : options_.interval);
+}
+
+void CameraFinding::lookAtReadout(const LookedAt& at, double longest_s, int keyframes, FoundCamera& found) {
+  const std::optional<CameraEstimate> estimate = estimateReadout(at, longest_s);
+  if (estimate &&
+      isToChange(looking_for_readout, *estimate, at.camera.readout_s, keyframes, options_.most_keyframes, readout_)) {
+    found.readout_s = std::clamp(estimate->value, -longest_s, longest_s);
+  }
+}
+
 bool CameraFinding::look(const Camera& calibrated, const GlobalAdjustmentOptions& global,
                          const LocalAdjustmentOptions& local, Map& map) {
   if (calibrated.readout_s != 0) readout_.is_settled = true;
-  const bool was_found = readout_.was_found || focal_length_.was_found || distortion_.was_found;
-  if (isSettled() || ++since_look_ < (was_found ? options_.interval_found : options_.interval)) return false;
+  const bool is_readout_due = isDue(readout_, ++since_readout_);
+  ++since_lens_;
+  const bool is_lens_due = isDue(focal_length_, since_lens_) || isDue(distortion_, since_lens_);
+  if (!options_.is_enabled || (!is_readout_due && !is_lens_due)) return false;
   const std::vector<KeyframeId> all = keyframesOf(map, map.keyframes.back().world);
   if (static_cast<int>(all.size()) < options_.fewest_keyframes) return false;
-  const int keyframes = std::exchange(since_look_, 0);
   const Camera camera = withFound(calibrated, map.found);
   const std::vector<KeyframeId> latest = latestOf(all, options_.most_keyframes);
   FoundCamera found = map.found;
-  if (!readout_.is_settled) {
+  if (is_readout_due) {
+    const int keyframes = std::exchange(since_readout_, 0);
     const std::optional<LookedAt> at = lookAt(camera, global, local, latest, map);
-    const double longest_s = longestReadout(map, latest);
-    const std::optional<CameraEstimate> estimate = at ? estimateReadout(*at, longest_s) : std::nullopt;
-    if (estimate &&
-        isToChange(looking_for_readout, *estimate, camera.readout_s, keyframes, options_.most_keyframes, readout_)) {
-      found.readout_s = std::clamp(estimate->value, -longest_s, longest_s);
-    }
+    if (at) lookAtReadout(*at, longestReadout(map, latest), keyframes, found);
   }
-  if (!focal_length_.is_settled || !distortion_.is_settled) {
-    const std::optional<LookedAt> at = lookAt(camera, global, local, latest, seenBy(latest, map));
+  if (is_lens_due) {
+    const int keyframes = std::exchange(since_lens_, 0);
+    const bool is_found = focal_length_.was_found || distortion_.was_found;
+    const std::vector<KeyframeId> looked_at = is_found ? latestOf(all, options_.most_keyframes_found) : latest;
+    const std::optional<LookedAt> at = lookAt(camera, global, local, looked_at, seenBy(looked_at, map));
     if (at) lookAtLens(*at, keyframes, found);
   }
   if (++looks_ >= options_.most_looks) readout_.is_settled = focal_length_.is_settled = distortion_.is_settled = true;

@@ -20,8 +20,10 @@ struct CameraFindingOptions {
   bool readout_is_known = false;  // that of the calibration counts, also where it is 0
   int fewest_keyframes = 12;      // of a world
   int interval = 2;               // keyframes from one look to the next, until something is found ...
-  int interval_found = 4;         // ... and then
-  int most_keyframes = 24;        // the latest so many are looked at
+  int interval_found = 4;         // ... and then ...
+  int interval_resting = 12;      // ... and after so many looks that found nothing that it may be known
+  int most_keyframes = 24;        // the latest so many are looked at ...
+  int most_keyframes_found = 48;  // ... and once another lens was found: one motion tells of it what another does not
   int most_looks = 50;
   int whole_map = 60;  // keyframes of a world that are all adjusted by what was found; of more the latest are
 };
@@ -38,7 +40,8 @@ struct CameraLooks {
   double last = 0;   // ... and what the last of these said
   int steady = 0;    // keyframes over which they changed nothing
   bool was_found = false;
-  bool is_settled = false;
+  bool is_settled = false;  // found, and it stayed; it is not looked for any more
+  bool rests = false;       // it is as presumed, as far as the motion tells: another motion may tell more
 };
 
 class CameraFinding {
@@ -52,17 +55,17 @@ class CameraFinding {
   bool look(const Camera& calibrated, const GlobalAdjustmentOptions& global, const LocalAdjustmentOptions& local,
             Map& map);
 
-  // Nothing is looked for any more.
-  bool isSettled() const {
-    return !options_.is_enabled || (readout_.is_settled && focal_length_.is_settled && distortion_.is_settled);
-  }
+  // What is found came to stay, and what is not is looked for now and then at most.
+  bool isSettled() const;
 
  private:
+  bool isDue(const CameraLooks& looks, int keyframes) const;
+  void lookAtReadout(const LookedAt& at, double longest_s, int keyframes, FoundCamera& found);
   void lookAtLens(const LookedAt& at, int keyframes, FoundCamera& found);
 
   CameraFindingOptions options_;
   CameraLooks readout_, focal_length_, distortion_;
-  int since_look_ = 0;  // keyframes
+  int since_readout_ = 0, since_lens_ = 0;  // was looked at [keyframes]
   int looks_ = 0;
 };
 

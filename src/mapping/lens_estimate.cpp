@@ -18,6 +18,19 @@ constexpr double most_change_at_once = 0.1;
 
 }  // namespace
 
+Eigen::Matrix3d wellConditioned(const Eigen::Matrix3d& information) {
+  constexpr double least_own_share = 0.03;
+  const Eigen::Vector3d sigmas = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::Matrix3d together =
+      sigmas.asDiagonal() * information * sigmas.asDiagonal() - Eigen::Matrix3d::Identity();
+  const double least =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(together, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  const double times = std::min(1.0, (1 - least_own_share) / std::max(-least, 1e-9));
+  Eigen::Matrix3d result = times * information;
+  result.diagonal() = information.diagonal();
+  return result;
+}
+
 std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain) {
   const Eigen::Vector3d step(0.02, 0.004, 0.004);
   LookedAt trials = at;
@@ -44,8 +57,9 @@ std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain
     }
   }
   if (!equations.gradient.allFinite() || !equations.information.allFinite()) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(equations.information, Eigen::EigenvaluesOnly);
-  return parts.eigenvalues()(0) > 0 ? std::optional(equations) : std::nullopt;
+  if (!(equations.information.diagonal().minCoeff() > 0)) return std::nullopt;
+  equations.information = wellConditioned(equations.information);
+  return equations;
 }
 
 LensEstimate estimateLens(const LensEquations& equations, bool focal_length, bool distortion) {

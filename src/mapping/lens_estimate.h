@@ -22,6 +22,10 @@ struct LensEstimate {
   double gain = 0;                                       // what the change takes off the cost
 };
 
+// Costs are no parabolas far from their least, so that what two changes do together may be told as more than both can
+// do. It is brought down until each of the three has a share of its own.
+Eigen::Matrix3d wellConditioned(const Eigen::Matrix3d& information);
+
 // Nothing where the cost of some trial is not known, or has no least. Where none of the three by itself explains
 // `least_gain` of the cost, they are taken to act each by itself: that takes a third of the trials.
 std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain = 0);

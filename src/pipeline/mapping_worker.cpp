@@ -88,24 +88,24 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
   return update;
 }
 
-// Once it has come to stay.
+// Once it has come to stay; what was told already is not told again.
 void MappingWorker::tellOfCamera() {
-  if (camera_is_told_ || !mapper_.cameraIsSettled()) return;
-  camera_is_told_ = true;
+  if (!mapper_.cameraIsSettled()) return;
   const FoundCamera& found = mapper_.map().found;
-  if (found.readout_s) {
+  const FoundCamera told = std::exchange(told_camera_, found);
+  if (found.readout_s && found.readout_s != told.readout_s) {
     report(last_frame_)
         .events.push_back(formatted("the camera has a rolling shutter and reads its rows over %.1f ms: with "
                                     "camera.readout: %.4f in the configuration this is known from the start",
                                     1e3 * *found.readout_s, *found.readout_s));
   }
-  if (found.focal_scale != 1) {
+  if (found.focal_scale != told.focal_scale) {
     report(last_frame_)
         .events.push_back(formatted("the focal length is not that of the calibration, but %.1f pixels: calibrate the "
                                     "camera",
                                     mapper_.camera().fx));
   }
-  if (found.radial != FoundCamera{}.radial) {
+  if (found.radial != told.radial) {
     report(last_frame_)
         .events.push_back(formatted("the distortion is not that of the calibration, but k1: %.4f, k2: %.4f: calibrate "
                                     "the camera",

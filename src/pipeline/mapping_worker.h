@@ -68,7 +68,7 @@ class MappingWorker {
   std::string not_found_;
   std::int64_t next_update_ = 0;
   std::string lacking_for_metres_;  // that was reported
-  bool camera_is_told_ = false;     // what was found of it
+  FoundCamera told_camera_;         // what was last said to be another than the calibration's
   std::vector<MappingReport> reports_;
 };
 

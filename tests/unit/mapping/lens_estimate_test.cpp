@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "unit/mapping/wrong_lens.h"
@@ -72,6 +73,18 @@ TEST(LensEstimate, WhereNothingExplainsMuchEachIsTakenByItself) {
   EXPECT_EQ(alone->information.diagonal(), all->information.diagonal());
   EXPECT_TRUE(alone->information.isDiagonal());
   EXPECT_FALSE(all->information.isDiagonal());
+}
+
+TEST(LensEstimate, WhatChangesDoTogetherLeavesEachAShareOfItsOwn) {
+  Eigen::Matrix3d apart, alike;
+  apart << 4, 1, 0, 1, 9, -2, 0, -2, 16;
+  alike << 4, 7, 0, 7, 9, -2, 0, -2, 16;  // one direction has less than no information
+  EXPECT_TRUE(wellConditioned(apart).isApprox(apart, 1e-12));
+  const Eigen::Matrix3d mended = wellConditioned(alike);
+  EXPECT_TRUE(mended.diagonal().isApprox(alike.diagonal(), 1e-12));
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mended).eigenvalues()(0), 0.03 * 4 * 0.9);
+  EXPECT_GT(mended(0, 1), 0);
+  EXPECT_LT(mended(0, 1), 6);
 }
 
 TEST(LensEstimate, AChangeIsWorthwhileAsFarAsItTakesOffWhatIsExpected) {
