@@ -45,6 +45,8 @@ void listDifferences(const Configuration& configuration) {
   }
   if (configuration.camera) {
     listCamera(*configuration.camera);
+    if (configuration.settings.mapping.camera_finding.lens_is_presumed)
+      std::cout << "  its lens is presumed, and looked for on the way\n";
   } else {
     std::cout << "  camera: not given; taken from beside the recording\n";
     if (configuration.readout_s) {

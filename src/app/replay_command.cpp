@@ -208,6 +208,9 @@ int runReplay(const ReplayArguments& arguments) {
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
   Configuration configuration = configurationFor(*source, arguments.configuration);
   const Camera calibrated = cameraFor(*source, configuration, arguments.input);
+  if (const std::string presumed = presumedLens(configuration); !presumed.empty()) {
+    std::cerr << "edgeslam: " << presumed << "\n";
+  }
   const MeasuredBeside measured =
       measuredBeside(*source, {arguments.imu, arguments.wheels, arguments.realtime}, configuration);
   const Camera camera = withReadoutOfUnit(calibrated, configuration);

@@ -24,7 +24,8 @@ Camera cameraOf(const RunArguments& arguments, const Configuration& configuratio
   if (configuration.camera) return *configuration.camera;
   if (beside) return asConfigured(*beside, configuration);
   throw InputError((arguments.configuration.empty() ? "" : arguments.configuration + ": ") +
-                   "no calibration of the camera; give one (camera.calibration)");
+                   "no calibration of the camera; give one (camera.calibration), or its size alone (camera.width and "
+                   "camera.height) to have it found on the way");
 }
 
 // A map that cannot be continued is no reason not to start: it is set aside, so that it is not written over.
@@ -56,6 +57,7 @@ DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
   if (!arguments.configuration.empty()) setup.configuration = readConfiguration(arguments.configuration);
   const ServiceOptions& service = setup.configuration.service;
   setup.camera = cameraOf(arguments, setup.configuration);
+  if (const std::string presumed = presumedLens(setup.configuration); !presumed.empty()) log.tell(presumed);
   setup.configuration.settings = settingsWithSensors(setup.configuration);
   setup.camera = withReadoutOfUnit(setup.camera, setup.configuration);
   setup.capture = setup.configuration.capture;

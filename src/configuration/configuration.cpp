@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -14,8 +15,10 @@
 #include "configuration/configuration_document.h"
 #include "configuration/configuration_imu.h"
 #include "configuration/configuration_keys.h"
+#include "files/format_text.h"
 #include "files/key_suggestion.h"
 #include "frames/mask_file.h"
+#include "geometry/angles.h"
 
 namespace edgeslam {
 namespace {
@@ -133,7 +136,7 @@ class Reader {
   std::vector<ConfigurationKey> keys_;
 };
 
-std::string formatted(const ConfigurationProblem& problem, const std::string& path) {
+std::string asLine(const ConfigurationProblem& problem, const std::string& path) {
   const std::string line = problem.line < 0 ? "" : ":" + std::to_string(problem.line + 1);
   return InputError::oneLine(path + line + ": " + problem.text);
 }
@@ -187,10 +190,20 @@ void readFile(const std::string& path, bool may_include, Configuration& configur
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const ConfigurationProblem& a, const ConfigurationProblem& b) { return a.line < b.line; });
-  for (const ConfigurationProblem& problem : found) problems.push_back(formatted(problem, path));
+  for (const ConfigurationProblem& problem : found) problems.push_back(asLine(problem, path));
 }
 
 }  // namespace
+
+std::string presumedLens(const Configuration& configuration) {
+  if (!configuration.camera || !configuration.settings.mapping.camera_finding.lens_is_presumed) return "";
+  const Camera& camera = *configuration.camera;
+  const double half_view = std::atan(0.5 * std::max(camera.width, camera.height) / camera.fx);
+  return formatted(
+      "%s: only the camera's size is given: a focal length of %.0f px is presumed (%.0f degrees are seen), "
+      "and looked for; poses bend until it is found",
+      configuration.source.c_str(), camera.fx, degrees(2 * half_view));
+}
 
 std::string maskProblem(const Camera& camera, const Configuration& configuration) {
   const std::string wrong = configuration.mask ? maskSizeProblem(*configuration.mask, camera) : "";

@@ -56,6 +56,9 @@ struct Configuration {
   std::string source;  // path of the file; empty for the defaults
 };
 
+// What is to be told where the lens is presumed; empty where it is not.
+std::string presumedLens(const Configuration& configuration);
+
 // Why the configuration's mask cannot be that of the camera: `camera.mask: ...`; empty where it can, or there is none.
 std::string maskProblem(const Camera& camera, const Configuration& configuration);
 

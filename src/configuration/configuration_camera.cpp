@@ -48,6 +48,22 @@ std::string setNumber(const ConfigurationKey& key, const YAML::Node& value) {
   return wrong.empty() ? "" : key.path + ": " + wrong + "; expected " + expectedValue(key);
 }
 
+// Of the longer side. Most phones, webcams and cameras of robots see 50 to 80 degrees along it.
+constexpr double presumed_focal_length = 0.8;
+
+// Of a camera of which only the size is known: a run finds how its lens is (mapping/camera_finding.h).
+void presumeLens(Camera& camera) {
+  camera.fx = camera.fy = presumed_focal_length * std::max(camera.width, camera.height);
+  camera.cx = 0.5 * (camera.width - 1);
+  camera.cy = 0.5 * (camera.height - 1);
+}
+
+bool hasOnlySize(const YAML::Node& section, const std::vector<CalibrationKey>& keys) {
+  if (section["model"] || !section["width"] || !section["height"]) return false;
+  return std::none_of(keys.begin() + 2, keys.end(),
+                      [&](const CalibrationKey& known) { return static_cast<bool>(section[known.key.name()]); });
+}
+
 void readInlineCalibration(const YAML::Node& section, Configuration& configuration, const TellProblem& tell) {
   Camera camera;
   bool good = true;
@@ -64,10 +80,12 @@ void readInlineCalibration(const YAML::Node& section, Configuration& configurati
     }
   }
   const std::vector<CalibrationKey> keys = calibrationKeys(camera);
+  const bool has_only_size = hasOnlySize(section, keys);
   for (const auto& [key, is_needed] : keys) {
     const YAML::Node value = section[key.name()];
     if (!value) {
-      if (is_needed) reject(section, key.path + " is missing (" + key.documentation + ", " + expectedValue(key) + ")");
+      if (is_needed && !has_only_size)
+        reject(section, key.path + " is missing (" + key.documentation + ", " + expectedValue(key) + ")");
       continue;
     }
     const std::string wrong = setNumber(key, value);
@@ -80,6 +98,8 @@ void readInlineCalibration(const YAML::Node& section, Configuration& configurati
       reject(section[name], std::string("camera.") + name + " is no coefficient of this camera model");
   }
   if (!good) return;
+  if (has_only_size) presumeLens(camera);
+  configuration.settings.mapping.camera_finding.lens_is_presumed = has_only_size;
   if (camera.cx < 0 || camera.cx > camera.width - 1 || camera.cy < 0 || camera.cy > camera.height - 1) {
     return tell(section["cx"].Mark().line, "camera.cx, camera.cy: the principal point lies outside the image");
   }
@@ -200,8 +220,11 @@ std::string formatCameraSection(const Configuration& configuration) {
   if (configuration.camera) {
     Camera camera = *configuration.camera;
     camera.readout_s = configuration.readout_s.value_or(camera.readout_s);  // also one that was set since
-    text += std::string("  model: ") + modelName(camera.model) + "\n";
-    for (const CalibrationKey& known : calibrationKeys(camera)) {
+    const bool has_only_size = configuration.settings.mapping.camera_finding.lens_is_presumed;
+    if (!has_only_size) text += std::string("  model: ") + modelName(camera.model) + "\n";
+    std::vector<CalibrationKey> keys = calibrationKeys(camera);
+    if (has_only_size) keys.resize(2);  // width and height
+    for (const CalibrationKey& known : keys) {
       text += "  " + known.key.name() + ": " + valueText(known.key.field) + "\n";
     }
     if (camera.readout_s != 0 || configuration.has_readout) {

@@ -40,9 +40,11 @@ ConfigurationKey special(const std::string& path, const std::string& documentati
 // The camera: its calibration and its place on the robot, and how it is set.
 Keys cameraKeys(CameraOptions& capture) {
   Keys keys{
-      heading("camera",
-              "The camera. Without a calibration here the one beside the recording is used (camera.yaml, EuRoC's "
-              "sensor.yaml)"),
+      heading(
+          "camera",
+          "The camera. Without a calibration here the one beside the recording is used (camera.yaml, EuRoC's "
+          "sensor.yaml).\nWhere there is none give width and height alone: a focal length is presumed then, and the "
+          "lens found on the way"),
       special("camera.calibration",
               "file with the calibration, relative to this file; or its keys in its place:", "cameras/tum_fr1.yaml"),
       special("camera.model", "pinhole_radial_tangential, or kannala_brandt for a fisheye lens",

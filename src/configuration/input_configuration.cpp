@@ -13,9 +13,10 @@ Configuration configurationFor(const FrameSource& source, const std::string& fil
 Camera cameraFor(const FrameSource& source, const Configuration& configuration, const std::string& input) {
   if (configuration.camera) return *configuration.camera;
   if (source.camera()) return asConfigured(*source.camera(), configuration);
-  throw InputError(
-      input +
-      ": no calibration: put a camera.yaml beside the frames, or give one in the configuration (camera.calibration)");
+  throw InputError(input +
+                   ": no calibration: put a camera.yaml beside the frames, or give one in the configuration "
+                   "(camera.calibration), or "
+                   "the camera's size alone (camera.width and camera.height) to have it found on the way");
 }
 
 }  // namespace edgeslam

@@ -40,7 +40,10 @@ std::array<double, 36> publicCovariance(const Matrix6d& covariance) {
 
 Configuration libraryConfiguration(const std::string& calibration_file, const std::string& configuration_file) {
   Configuration configuration = configuration_file.empty() ? Configuration() : readConfiguration(configuration_file);
-  if (!calibration_file.empty()) configuration.camera = readCalibration(calibration_file);
+  if (!calibration_file.empty()) {
+    configuration.camera = readCalibration(calibration_file);
+    configuration.settings.mapping.camera_finding.lens_is_presumed = false;
+  }
   if (configuration.camera) {
     configuration.camera = asConfigured(*configuration.camera, configuration);
     configuration.settings = settingsWithSensors(configuration);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 
 #include "map/worlds.h"
@@ -13,6 +14,7 @@
 namespace edgeslam {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double longest_tried_s = 0.05;    // no camera takes longer
 constexpr double readout_step_s = 0.006;    // between those that are tried
 constexpr double farthest_believed = 0.25;  // change of the lens: beyond it the trials do not say
@@ -39,7 +41,10 @@ constexpr double beyond_doubt = 8;    // standard deviations; only without a lea
 constexpr double least_share = 0.02;  // of the cost: with the right lens some other one explains less ...
 constexpr double least_gain = 2;      // ... and of the cost itself: two standard deviations
 constexpr double clearly_more = 2;    // by itself: of the two a focal length is calibrated rather than a distortion
-constexpr double hardly_any = 0.25;   // of that gain: with others it does not come to more
+constexpr double most_change_of_calibrated = 0.25, most_change_of_presumed = 0.7;  // logarithm of the focal lengths
+constexpr double farthest_steps = 5;   // of trials of a lens that is presumed
+constexpr double far_off_share = 0.2;  // of the cost: a lens that explains so much is far off; only whereto is known
+constexpr double hardly_any = 0.25;    // of that gain: with others it does not come to more
 
 std::vector<KeyframeId> latestOf(std::vector<KeyframeId> keyframes, int most) {
   if (static_cast<int>(keyframes.size()) > most) keyframes.erase(keyframes.begin(), keyframes.end() - most);
@@ -104,10 +109,10 @@ bool saysSo(const Looking& looking, const CameraEstimate& change) {
   return std::abs(change.value) > std::max(looking.least, looking.least_sigmas * honestSigma(looking, change));
 }
 
-// True where the value that there is now is to change, after one more look.
-// `keyframes`: since the look before. It is settled when it stays for `enough` keyframes.
+// True where the value that there is now is to change, after one more look. `keyframes`: since the look before. It is
+// settled when it stays for `enough` keyframes. Looks at what `is_far_off` agree where they say to which side.
 bool isToChange(const Looking& looking, const CameraEstimate& estimate, double now, int keyframes, int enough,
-                CameraLooks& looks) {
+                CameraLooks& looks, bool is_far_off = false) {
   const double change = estimate.value - now;
   if (looks.was_found) {
     looks.steady = std::abs(change) < looking.little ? looks.steady + keyframes : 0;
@@ -116,8 +121,9 @@ bool isToChange(const Looking& looking, const CameraEstimate& estimate, double n
   }
   const double sigma = honestSigma(looking, estimate);
   const bool says_so = saysSo(looking, {change, estimate.sigma});
-  const bool agrees = looks.agreeing > 0 && change * looks.last > 0 &&
-                      std::abs(change - looks.last) < std::max(looking.agreement, alike * std::abs(change));
+  const bool is_alike =
+      is_far_off || std::abs(change - looks.last) < std::max(looking.agreement, alike * std::abs(change));
+  const bool agrees = looks.agreeing > 0 && change * looks.last > 0 && is_alike;
   looks.agreeing = !says_so ? 0 : agrees ? looks.agreeing + 1 : 1;
   looks.last = change;
   looks.steady = !says_so && sigma < looking.well_known ? looks.steady + keyframes : 0;
@@ -175,7 +181,8 @@ std::optional<CameraEstimate> estimateReadout(const LookedAt& at, double longest
 
 void CameraFinding::lookAtLens(const LookedAt& at, int keyframes, FoundCamera& found) {
   const bool was_found = focal_length_.was_found || distortion_.was_found;
-  const auto equations = lensEquations(at, was_found ? 0 : hardly_any * enoughGain(at.cost));
+  const auto equations = lensEquations(at, was_found ? 0 : hardly_any * enoughGain(at.cost),
+                                       options_.lens_is_presumed ? farthest_steps : infinity);
   if (!equations) return;
   ToldOfLens told;
   if (!focal_length_.was_found || !distortion_.was_found) told = toldOfLens(*equations, at.cost);
@@ -183,9 +190,10 @@ void CameraFinding::lookAtLens(const LookedAt& at, int keyframes, FoundCamera& f
   const bool with_distortion = distortion_.was_found || told.distortion;
   const LensEstimate estimate = estimateLens(*equations, with_focal_length, with_distortion);
   const LensEstimate both = estimateLens(*equations, true, true);
+  const bool is_far_off = options_.lens_is_presumed && estimate.gain > far_off_share * at.cost;
   const auto isChanged = [&](const Looking& looking, CameraEstimate of_it, bool is_told, CameraLooks& looks) {
     if (!is_told) of_it.value = 0;
-    return !looks.is_settled && isToChange(looking, of_it, 0, keyframes, options_.most_keyframes, looks);
+    return !looks.is_settled && isToChange(looking, of_it, 0, keyframes, options_.most_keyframes, looks, is_far_off);
   };
   Eigen::Vector3d change = Eigen::Vector3d::Zero();
   if (isChanged(looking_for_focal_length, focalLengthOf(with_focal_length ? estimate : both), with_focal_length,
@@ -198,7 +206,9 @@ void CameraFinding::lookAtLens(const LookedAt& at, int keyframes, FoundCamera& f
   }
   // One waits for the other: what is told, but not for sure yet, may explain it better.
   const bool waits = (with_focal_length && !focal_length_.was_found) || (with_distortion && !distortion_.was_found);
-  if (!waits && !change.isZero(0)) found = withLens(at.camera, found, worthwhile(at, *equations, change));
+  if (waits || change.isZero(0)) return;
+  found = withLens(at.camera, found, worthwhile(at, *equations, change),
+                   options_.lens_is_presumed ? most_change_of_presumed : most_change_of_calibrated);
 }
 
 bool CameraFinding::isSettled() const {

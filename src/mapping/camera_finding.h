@@ -18,6 +18,7 @@ namespace edgeslam {
 struct CameraFindingOptions {
   bool is_enabled = true;
   bool readout_is_known = false;  // that of the calibration counts, also where it is 0
+  bool lens_is_presumed = false;  // there is no calibration: the lens may be far off
   int fewest_keyframes = 12;      // of a world
   int interval = 2;               // keyframes from one look to the next, until something is found ...
   int interval_found = 4;         // ... and then ...

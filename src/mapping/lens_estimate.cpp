@@ -13,7 +13,6 @@ namespace {
 
 constexpr int iterations_of_trial = 3;          // about a map that is adjusted; more find the same
 constexpr double distortion_at[] = {0.5, 0.9};  // of the way from the centre to the farthest corner
-constexpr double most_focal_change = 0.25;      // of the logarithm, over that of the calibration
 constexpr double most_change_at_once = 0.1;
 
 }  // namespace
@@ -31,7 +30,7 @@ Eigen::Matrix3d wellConditioned(const Eigen::Matrix3d& information) {
   return result;
 }
 
-std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain) {
+std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain, double farthest_steps) {
   const Eigen::Vector3d step(0.02, 0.004, 0.004);
   LookedAt trials = at;
   trials.adjustment.bundle.iterations = iterations_of_trial;
@@ -57,6 +56,10 @@ std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain
     }
   }
   if (!equations.gradient.allFinite() || !equations.information.allFinite()) return std::nullopt;
+  for (int k = 0; k < 3; ++k) {
+    double& own = equations.information(k, k);
+    own = std::max(own, std::abs(equations.gradient(k)) / (farthest_steps * step(k)));
+  }
   if (!(equations.information.diagonal().minCoeff() > 0)) return std::nullopt;
   equations.information = wellConditioned(equations.information);
   return equations;
@@ -81,7 +84,8 @@ LensEstimate estimateLens(const LensEquations& equations, bool focal_length, boo
   return estimate;
 }
 
-FoundCamera withLens(const Camera& camera, const FoundCamera& found, const Eigen::Vector3d& change) {
+FoundCamera withLens(const Camera& camera, const FoundCamera& found, const Eigen::Vector3d& change,
+                     double most_focal_change) {
   FoundCamera with = found;
   const double logarithm = std::clamp(std::log(found.focal_scale) + change(0), -most_focal_change, most_focal_change);
   with.focal_scale = inMillionths(std::exp(logarithm));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 
 #include "geometry/found_camera.h"
@@ -28,13 +29,17 @@ Eigen::Matrix3d wellConditioned(const Eigen::Matrix3d& information);
 
 // Nothing where the cost of some trial is not known, or has no least. Where none of the three by itself explains
 // `least_gain` of the cost, they are taken to act each by itself: that takes a third of the trials.
-std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain = 0);
+// What lies farther off than `farthest_steps` between trials they do not tell: where the cost falls on, it is there.
+std::optional<LensEquations> lensEquations(const LookedAt& at, double least_gain = 0,
+                                           double farthest_steps = std::numeric_limits<double>::infinity());
 
 // With the focal length, the distortion, or both free.
 LensEstimate estimateLens(const LensEquations& equations, bool focal_length, bool distortion);
 
-// With another lens than `camera`, in which `found` counts already.
-FoundCamera withLens(const Camera& camera, const FoundCamera& found, const Eigen::Vector3d& change);
+// With another lens than `camera`, in which `found` counts already. `most_focal_change`: of the logarithm of the focal
+// lengths, over those of the calibration.
+FoundCamera withLens(const Camera& camera, const FoundCamera& found, const Eigen::Vector3d& change,
+                     double most_focal_change = 0.25);
 
 // As much of a change as takes off the cost what the equations say; or nothing of it.
 Eigen::Vector3d worthwhile(const LookedAt& at, const LensEquations& equations, Eigen::Vector3d change);

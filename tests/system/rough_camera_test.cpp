@@ -109,6 +109,23 @@ TEST(RoughCamera, AFocalLengthThatIsFarOffIsFoundOnTheWay) {
       << finds.outcome.output;
 }
 
+// Simulated cameras have 265 px, and distort.
+TEST(RoughCamera, TheSizeOfTheCameraIsEnoughToTryIt) {
+  const TemporaryFolder folder;
+  const std::string configuration = folder.write("size.yaml", "camera: {width: 320, height: 240}\n");
+  const ReplayedRun result = replayed(place("hall"), folder.path("result"), {"--config", configuration});
+  expectPosesGoOn(result, place("hall"), 0.03);
+  EXPECT_LT(meanError(result, place("hall")), 0.01);
+  EXPECT_NE(result.outcome.messages.find("a focal length of 256 px is presumed (64 degrees"), std::string::npos)
+      << result.outcome.messages;
+  const std::regex line("the focal length is not that of the calibration, but ([0-9.]+) pixels");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(result.outcome.output, match, line)) << result.outcome.output;
+  EXPECT_NEAR(std::stod(match[1]), 265.5, 4);
+  const ReplayedRun again = replayed(place("hall"), folder.path("again"), {"--config", configuration});
+  EXPECT_EQ(fileContent(again.folder + "/trajectory.txt"), fileContent(result.folder + "/trajectory.txt"));
+}
+
 TEST(RoughCamera, TheReadoutIsFoundByWhatFitsBest) {
   const Outcome found = runProgram({"calibrate", "--readout", place("parlour_rolling")});
   ASSERT_EQ(found.exit_code, 0) << found.messages;

@@ -127,6 +127,33 @@ TEST(ConfigurationCamera, WrongReadoutsAreRefused) {
   }
 }
 
+TEST(ConfigurationCamera, OfTheSizeAloneALensIsPresumed) {
+  for (const char* readout : {"", ", readout: 0.02"}) {
+    const Configuration configuration =
+        configurationOf(std::string("camera: {width: 480, height: 640") + readout + "}\n");
+    ASSERT_TRUE(configuration.camera);
+    EXPECT_EQ(configuration.camera->fx, 512);
+    EXPECT_EQ(configuration.camera->fy, 512);
+    EXPECT_EQ(configuration.camera->cx, 239.5);
+    EXPECT_EQ(configuration.camera->cy, 319.5);
+    EXPECT_TRUE(configuration.settings.mapping.camera_finding.lens_is_presumed);
+    EXPECT_NE(presumedLens(configuration).find("a focal length of 512 px is presumed (64 degrees"), std::string::npos)
+        << presumedLens(configuration);
+    // So a recording says it, too, and is repeated the same.
+    const std::string written = formatConfiguration(configuration);
+    const Configuration again = configurationOf(written);
+    EXPECT_TRUE(again.settings.mapping.camera_finding.lens_is_presumed) << written;
+    EXPECT_EQ(*again.camera, *configuration.camera);
+    EXPECT_EQ(again.has_readout, configuration.has_readout);
+  }
+  const Configuration calibrated = configurationOf("camera: {" + calibration + "}\n");
+  EXPECT_FALSE(calibrated.settings.mapping.camera_finding.lens_is_presumed);
+  EXPECT_EQ(presumedLens(calibrated), "");
+  expectRefused("camera: {width: 640, height: 480, fx: 500}\n", "camera.fy is missing");
+  expectRefused("camera: {width: 640, height: 480, model: kannala_brandt}\n", "camera.fx is missing");
+  expectRefused("camera: {width: 640, height: 480, k1: 0.1}\n", "camera.fx is missing");
+}
+
 TEST(ConfigurationCamera, WrongCalibrationsAreRefused) {
   expectRefused("camera: {width: 640}\n", "camera.height is missing");
   expectRefused("camera: {" + calibration + ", k4: 1}\n", "camera.k4 is no coefficient");
