@@ -110,6 +110,9 @@ int findReadout(const std::string& recording, const std::string& configuration_f
   const std::unique_ptr<FrameSource> source = openFrameSource(recording);
   const Configuration configuration = configurationFor(*source, configuration_file);
   const Camera camera = cameraFor(*source, configuration, recording);
+  if (configuration.settings.mapping.camera_finding.lens_is_presumed) {
+    throw InputError(configuration.source + ": only the camera's size is given; its readout needs a calibration");
+  }
   const double longest_s = std::min(frameInterval(recording), longest_readout_tried_s);
   Trials trials(recording, camera, configuration.settings);
   const ReadoutEstimate estimate =

@@ -36,11 +36,21 @@ std::string scaleProblem(const ScaleOptions& scale) {
   return needs_channel ? "scale.source: odometry needs scale.odometry_channel" : "";
 }
 
+// A lens that is presumed, and never looked for.
+std::string lensProblem(const CameraFindingOptions& finding) {
+  if (!finding.lens_is_presumed || finding.is_enabled) return "";
+  return "camera_finding.enabled: expected true: of the camera only its size is given, and without this its lens stays "
+         "as it is presumed";
+}
+
 }  // namespace
 
 std::string sectionProblem(const std::string& section, const Configuration& configuration) {
   const ServiceOptions& service = configuration.service;
   if (section == "viewer") return viewerProblem(service.viewer);
+  if (section == "camera" || section == "camera_finding") {
+    return lensProblem(configuration.settings.mapping.camera_finding);
+  }
   if (section == "ros2") return ros2Problem(service.ros2);
   if (section == "imu") {
     return channelProblem(service, &LcmOptions::imu_channel, configuration.inertia.channel, "imu.channel");

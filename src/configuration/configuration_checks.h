@@ -7,7 +7,8 @@
 
 namespace edgeslam {
 
-// What is wrong with the sections `lcm`, `scale` or `viewer`, naming the key; empty for others and where nothing is.
+// What is wrong with the sections `camera`, `lcm`, `scale` or `viewer` and others, naming the key; empty
+// for those without a check and where nothing is.
 std::string sectionProblem(const std::string& section, const Configuration& configuration);
 
 }  // namespace edgeslam

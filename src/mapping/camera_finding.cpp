@@ -40,7 +40,8 @@ constexpr double alike = 0.25;        // estimates that differ by less of their 
 constexpr double beyond_doubt = 8;    // standard deviations; only without a least change
 constexpr double least_share = 0.02;  // of the cost: with the right lens some other one explains less ...
 constexpr double least_gain = 2;      // ... and of the cost itself: two standard deviations
-constexpr double clearly_more = 2;    // by itself: of the two a focal length is calibrated rather than a distortion
+constexpr double clearly_more = 2;    // by itself: of the two a focal length is calibrated rather than a distortion ...
+constexpr double most_of_distortion = 0.04;  // ... which looks like so much of a focal length
 constexpr double most_change_of_calibrated = 0.25, most_change_of_presumed = 0.7;  // logarithm of the focal lengths
 constexpr double farthest_steps = 5;   // of trials of a lens that is presumed
 constexpr double far_off_share = 0.2;  // of the cost: a lens that explains so much is far off; only whereto is known
@@ -162,7 +163,8 @@ ToldOfLens toldOfLens(const LensEquations& equations, double cost) {
   if (told.focal_length || told.distortion) return told;
   const bool may_be_focal_length = tells(looking_for_focal_length, focalLengthOf(focal_length), focal_length.gain);
   const bool may_be_distortion = tells(looking_for_distortion, distortionOf(distortion), distortion.gain);
-  const double times_as_much = may_be_distortion ? clearly_more : 1;
+  const bool is_little = std::abs(focal_length.change(0)) < most_of_distortion;
+  const double times_as_much = may_be_distortion && is_little ? clearly_more : 1;
   told.focal_length = may_be_focal_length && focal_length.gain > times_as_much * distortion.gain;
   told.distortion = may_be_distortion && !told.focal_length;
   return told;

@@ -43,7 +43,7 @@ void describe(const LocationFigures& figures, std::string& reason) {
 void FrameLocation::setCamera(const Camera& camera) {
   const bool has_other_rays = camera.fx != camera_.fx || camera.fy != camera_.fy;
   camera_ = camera;
-  if (has_other_rays) rotation_grids_ = makeRotationGrids(camera);
+  if (has_other_rays) renewRotationGrids(camera, rotation_grids_);
 }
 
 FrameLocation::FrameLocation(const Camera& camera, const LocationOptions& options)

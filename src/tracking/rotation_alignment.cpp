@@ -59,6 +59,14 @@ Comparison compare(const Camera& camera, const RotationGrid& grid, const cv::Mat
   return sum;
 }
 
+// [px] of the level.
+int spacingOfSamples(const Camera& camera, int level) {
+  const int pixels = (camera.width >> level) * (camera.height >> level);
+  int spacing = 1;
+  while (pixels > most_samples * spacing * spacing) ++spacing;
+  return spacing;
+}
+
 }  // namespace
 
 std::vector<RotationGrid> makeRotationGrids(const Camera& camera) {
@@ -69,16 +77,27 @@ std::vector<RotationGrid> makeRotationGrids(const Camera& camera) {
     RotationGrid grid;
     grid.level = level;
     if (static_cast<std::size_t>(level) < hidden.size()) grid.hidden = hidden[static_cast<std::size_t>(level)];
-    const int columns = camera.width >> level, rows = camera.height >> level;
-    int spacing = 1;
-    while (columns * rows > most_samples * spacing * spacing) ++spacing;
+    const int spacing = spacingOfSamples(camera, level);
+    grid.samples.reserve(static_cast<std::size_t>((camera.width >> level) / spacing + 1) *
+                         static_cast<std::size_t>((camera.height >> level) / spacing + 1));
+    grids.push_back(std::move(grid));
+  }
+  renewRotationGrids(camera, grids);
+  return grids;
+}
+
+void renewRotationGrids(const Camera& camera, std::vector<RotationGrid>& grids) {
+  for (RotationGrid& grid : grids) {
+    const int columns = camera.width >> grid.level, rows = camera.height >> grid.level;
+    const int spacing = spacingOfSamples(camera, grid.level);
+    grid.samples.clear();
     for (int y = 1; y + 1 < rows; y += spacing) {
       for (int x = 1; x + 1 < columns; x += spacing) {
         if (!grid.hidden.empty() && grid.hidden.at<unsigned char>(y, x) != 0) continue;
         RotationGrid::Sample sample;
         sample.x = x;
         sample.y = y;
-        const double size = 1 << level;
+        const double size = 1 << grid.level;
         sample.bearing = bearing(camera, {x * size, y * size});
         if (sample.bearing.z() < 0.1) continue;
         Eigen::Matrix<double, 2, 3> jacobian;
@@ -87,9 +106,7 @@ std::vector<RotationGrid> makeRotationGrids(const Camera& camera) {
         grid.samples.push_back(sample);
       }
     }
-    grids.push_back(std::move(grid));
   }
-  return grids;
 }
 
 Eigen::Quaterniond alignRotation(const Camera& camera, const std::vector<RotationGrid>& grids, const ImagePyramid& from,

@@ -27,6 +27,9 @@ struct RotationGrid {
 // Grids for levels 5 to 3, some 600 samples each at most, where the camera's mask does not show.
 std::vector<RotationGrid> makeRotationGrids(const Camera& camera);
 
+// The same grids, made for `camera`, where it was found to be another one: of the same size and mask. Takes no memory.
+void renewRotationGrids(const Camera& camera, std::vector<RotationGrid>& grids);
+
 // to_R_from, from `initial`. Returns `initial` where the images cannot be compared.
 Eigen::Quaterniond alignRotation(const Camera& camera, const std::vector<RotationGrid>& grids, const ImagePyramid& from,
                                  const ImagePyramid& to, const Eigen::Quaterniond& initial);

@@ -122,6 +122,9 @@ TEST(RoughCamera, TheSizeOfTheCameraIsEnoughToTryIt) {
   std::smatch match;
   ASSERT_TRUE(std::regex_search(result.outcome.output, match, line)) << result.outcome.output;
   EXPECT_NEAR(std::stod(match[1]), 265.5, 4);
+  const Outcome readout = runProgram({"calibrate", "--readout", place("hall"), "--config", configuration});
+  EXPECT_EQ(readout.exit_code, 2);
+  EXPECT_NE(readout.messages.find("its readout needs a calibration"), std::string::npos) << readout.messages;
   const ReplayedRun again = replayed(place("hall"), folder.path("again"), {"--config", configuration});
   EXPECT_EQ(fileContent(again.folder + "/trajectory.txt"), fileContent(result.folder + "/trajectory.txt"));
 }

@@ -152,6 +152,9 @@ TEST(ConfigurationCamera, OfTheSizeAloneALensIsPresumed) {
   expectRefused("camera: {width: 640, height: 480, fx: 500}\n", "camera.fy is missing");
   expectRefused("camera: {width: 640, height: 480, model: kannala_brandt}\n", "camera.fx is missing");
   expectRefused("camera: {width: 640, height: 480, k1: 0.1}\n", "camera.fx is missing");
+  const std::string size = "camera: {width: 640, height: 480}\n", never = "camera_finding: {enabled: false}\n";
+  expectRefused(size + never, "file.yaml:2: camera_finding.enabled: expected true");
+  expectRefused(never + size, "file.yaml:2: camera_finding.enabled: expected true");
 }
 
 TEST(ConfigurationCamera, WrongCalibrationsAreRefused) {

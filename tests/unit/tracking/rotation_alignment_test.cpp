@@ -52,6 +52,25 @@ TEST(RotationAlignment, AFlatImageLeavesTheStart) {
   EXPECT_EQ(alignRotation(camera, makeRotationGrids(camera), flat, flat, start).coeffs(), start.coeffs());
 }
 
+TEST(RotationAlignment, GridsAreRenewedForAnotherCameraInPlace) {
+  Camera longer = smallCamera();
+  longer.fx *= 1.2;
+  longer.fy *= 1.2;
+  std::vector<RotationGrid> renewed = makeRotationGrids(smallCamera());
+  const RotationGrid::Sample* const place = renewed.front().samples.data();
+  renewRotationGrids(longer, renewed);
+  EXPECT_EQ(renewed.front().samples.data(), place);
+  const std::vector<RotationGrid> made = makeRotationGrids(longer);
+  ASSERT_EQ(renewed.size(), made.size());
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    ASSERT_EQ(renewed[i].samples.size(), made[i].samples.size());
+    for (std::size_t k = 0; k < made[i].samples.size(); ++k) {
+      EXPECT_EQ(renewed[i].samples[k].bearing, made[i].samples[k].bearing);
+      EXPECT_EQ(renewed[i].samples[k].pixel_by_rotation, made[i].samples[k].pixel_by_rotation);
+    }
+  }
+}
+
 // A plate of the robot turns with the camera and says that it stands still.
 TEST(RotationAlignment, WhatIsMaskedDoesNotCount) {
   Camera camera = smallCamera();
