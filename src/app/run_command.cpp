@@ -57,7 +57,6 @@ DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
   if (!arguments.configuration.empty()) setup.configuration = readConfiguration(arguments.configuration);
   const ServiceOptions& service = setup.configuration.service;
   setup.camera = cameraOf(arguments, setup.configuration);
-  if (const std::string presumed = presumedLens(setup.configuration); !presumed.empty()) log.tell(presumed);
   setup.configuration.settings = settingsWithSensors(setup.configuration);
   setup.camera = withReadoutOfUnit(setup.camera, setup.configuration);
   setup.capture = setup.configuration.capture;

@@ -121,6 +121,7 @@ void readCalibrationFile(const YAML::Node& section, const YAML::Node& calibratio
   const std::filesystem::path folder = std::filesystem::path(configuration.source).parent_path();
   try {
     configuration.camera = readCalibration((folder / calibration.Scalar()).string());
+    configuration.settings.mapping.camera_finding.lens_is_presumed = false;  // also where an included file presumed it
   } catch (const InputError& error) {
     tell(calibration.Mark().line, std::string("camera.calibration: ") + error.what());
   }

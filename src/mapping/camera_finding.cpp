@@ -34,7 +34,7 @@ struct Looking {
 };
 constexpr Looking looking_for_readout{0.0005, 0, 3, 2, longest_tried_s, 0.001, 0.0003, 0.002};
 constexpr Looking looking_for_focal_length{0.005, 0.01, 2, 3, 0.02, 0.01, 0.003, 0.01};
-constexpr Looking looking_for_other_focal_length{0.005, 0.03, 3, 3, 0.02, 0.01, 0.003, 0.01};
+constexpr Looking looking_for_focal_length_beside_distortion{0.005, 0.03, 3, 3, 0.02, 0.01, 0.003, 0.01};
 constexpr Looking looking_for_distortion{0.0002, 0.004, 0, 3, 0.02, 0.001, 0.0003, 0.004};
 constexpr double alike = 0.25;        // estimates that differ by less of their value agree, too
 constexpr double beyond_doubt = 8;    // standard deviations; only without a least change
@@ -156,8 +156,9 @@ ToldOfLens toldOfLens(const LensEquations& equations, double cost) {
   if (both.change.cwiseAbs().maxCoeff() < farthest_believed) {
     // A distortion that is left out looks like a focal length that is a little off.
     const bool is_mostly_focal_length = both.gain > clearly_more * distortion.gain;
-    told.focal_length = tells(is_mostly_focal_length ? looking_for_focal_length : looking_for_other_focal_length,
-                              focalLengthOf(both), both.gain - distortion.gain);
+    told.focal_length =
+        tells(is_mostly_focal_length ? looking_for_focal_length : looking_for_focal_length_beside_distortion,
+              focalLengthOf(both), both.gain - distortion.gain);
     told.distortion = tells(looking_for_distortion, distortionOf(both), both.gain - focal_length.gain);
   }
   if (told.focal_length || told.distortion) return told;

@@ -17,6 +17,7 @@ constexpr auto longest_wait = std::chrono::milliseconds(100);  // for a frame, b
 Daemon::Daemon(DaemonSetup setup, EventLog& log)
     : setup_(std::move(setup)), log_(log), next_recording_(setup_.configuration, setup_.camera, link_, log) {
   for (const std::string& problem : startProblems(startNeeds(setup_))) log_.tell(problem);
+  if (const std::string presumed = presumedLens(setup_.configuration); !presumed.empty()) log_.tell(presumed);
   openCamera();
   page_ = std::make_unique<DaemonPage>(setup_, camera_->stream().camera, signals_, log_);
   publisher_ = std::make_unique<RunPublisher>(publishingSetup(setup_, page_->viewer()), link_, log_);

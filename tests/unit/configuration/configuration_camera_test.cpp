@@ -157,6 +157,19 @@ TEST(ConfigurationCamera, OfTheSizeAloneALensIsPresumed) {
   expectRefused(never + size, "file.yaml:2: camera_finding.enabled: expected true");
 }
 
+TEST(ConfigurationCamera, ACalibrationCountsAlsoWhereAnIncludedFileHasTheSizeAlone) {
+  for (const std::string& given : {std::string("calibration: known.yaml"), calibration}) {
+    const TemporaryFolder folder;
+    folder.write("known.yaml", "width: 640\nheight: 480\nfx: 500\nfy: 501\ncx: 320\ncy: 240\n");
+    folder.write("base.yaml", "camera: {width: 640, height: 480}\n");
+    const Configuration read =
+        readConfiguration(folder.write("file.yaml", "include: base.yaml\ncamera: {" + given + "}\n"));
+    EXPECT_FALSE(read.settings.mapping.camera_finding.lens_is_presumed) << given;
+    EXPECT_EQ(read.camera->fx, 500);
+    EXPECT_EQ(configurationOf(formatConfiguration(read)).camera, read.camera);
+  }
+}
+
 TEST(ConfigurationCamera, WrongCalibrationsAreRefused) {
   expectRefused("camera: {width: 640}\n", "camera.height is missing");
   expectRefused("camera: {" + calibration + ", k4: 1}\n", "camera.k4 is no coefficient");

@@ -86,6 +86,18 @@ TEST(CameraFinding, AFocalLengthThatIsOffIsFoundAndOneThatIsNearlyRightIsLeftAlo
   }
 }
 
+TEST(CameraFinding, APresumedFocalLengthMayBeFarOff) {
+  for (const double times : {0.8, 1.25}) {
+    const Camera wrong = test::withFocalLengths(test::Walk::camera(), times);
+    test::Walk walk = test::mappedWith(wrong, 10);
+    CameraFindingOptions options;
+    options.lens_is_presumed = true;
+    CameraFinding finding(options);
+    for (int keyframe = 0; keyframe < 400 && !finding.isSettled(); ++keyframe) finding.look(wrong, {}, {}, walk.map);
+    EXPECT_NEAR(walk.map.found.focal_scale * times, 1, 0.06) << times;
+  }
+}
+
 // Looks that find nothing for long do not end the search.
 TEST(CameraFinding, WhatOneMotionDoesNotTellIsFoundOnceAnotherTellsIt) {
   test::Walk silent = test::rollingWalk(5, 20, 0, motion, noise),
