@@ -1,0 +1,31 @@
+// How an inertial unit sits on a camera, and how their clocks differ, from any recording in which the camera turned: by
+// comparing how it turned in its map with what the gyroscope felt.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibration/camera_turns.h"
+#include "calibration/turn_fit.h"
+#include "inertia/inertial_unit.h"
+
+namespace edgeslam {
+
+struct InertialCalibration {
+  std::string problem;    // why the recording does not say; empty where it does
+  TurnFit fit;            // means nothing where there is a problem
+  double turn_s = 0;      // how long the turns of `fit` last
+  std::string unchecked;  // what it could not tell all the same, for people; empty: nothing
+};
+
+// Times of `poses` ascend, and those of `samples`; there are some of both. What counts of what is known of the unit is
+// its offset, to half a second, and how its gyroscope's bias walks.
+InertialCalibration calibrateInertialUnit(const std::vector<PosedCamera>& poses,
+                                          const std::vector<InertialSample>& samples, const InertialUnit& known);
+
+// Standard deviations of a fit.
+Eigen::Vector3d rotationSigma(const TurnFit& fit);  // about the camera's x, y and z [rad]
+Eigen::Vector3d biasSigma(const TurnFit& fit);      // the unit's frame [rad/s]
+double offsetSigma(const TurnFit& fit);             // [s]
+
+}  // namespace edgeslam
