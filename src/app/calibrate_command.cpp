@@ -8,6 +8,7 @@
 #include "app/calibration_frames.h"
 #include "app/command_line.h"
 #include "app/end_signals.h"
+#include "app/inertial_command.h"
 #include "app/output_file.h"
 #include "app/readout_command.h"
 #include "calibration/board_pdf.h"
@@ -26,6 +27,7 @@ struct CalibrateOptions {
   double seconds = 0;
   bool force = false;
   bool readout = false;
+  bool imu = false;
 };
 
 struct BoardOptions {
@@ -179,6 +181,11 @@ void addCalibrateCommand(CLI::App& app, int& exit_code) {
       "--readout", options->readout,
       "Find the readout of a rolling shutter instead, from a recording (INPUT) of a calibrated camera that moves");
   readout->excludes(camera);
+  CLI::Option* imu = command->add_flag(
+      "--imu", options->imu,
+      "Find how the inertial unit sits on the camera instead, and how their clocks differ, from a recording (INPUT) of "
+      "a calibrated camera that turns about all axes, in any scene or before a --board; --output is its imu.yaml");
+  imu->excludes(camera)->excludes(readout);
   command->require_subcommand(0, 1);
   addBoardCommand(*command, exit_code);
   command->callback([options, command, &exit_code] {
@@ -186,6 +193,12 @@ void addCalibrateCommand(CLI::App& app, int& exit_code) {
     if (options->readout) {
       if (options->input.empty()) throw CLI::RequiredError("INPUT");
       exit_code = findReadout(options->input, options->configuration);
+      return;
+    }
+    if (options->imu) {
+      if (options->input.empty()) throw CLI::RequiredError("INPUT");
+      const std::string unit_file = command->count("--output") > 0 ? options->output : "";
+      exit_code = calibrateUnit({options->input, options->configuration, options->board, unit_file, options->force});
       return;
     }
     if (options->board.empty()) throw CLI::RequiredError("--board");
