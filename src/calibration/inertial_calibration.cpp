@@ -82,8 +82,10 @@ std::string accuracyProblem(const TurnFit& fit) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(fit.covariance.topLeftCorner<3, 3>());
   const double worst = std::sqrt(spread.eigenvalues()(2));
   if (worst > largest_rotation_sigma) {
-    return formatted("the rotation about %s is known to %.1f degrees only: turn the camera more about the others",
-                     axisText(spread.eigenvectors().col(2)).c_str(), degrees(worst));
+    return formatted(
+        "the rotation about %s is known to %.1f degrees only: turn the camera more about the others, before more "
+        "texture",
+        axisText(spread.eigenvectors().col(2)).c_str(), degrees(worst));
   }
   if (offsetSigma(fit) > largest_offset_sigma_s) {
     return formatted("the clocks' offset is known to %.1f ms only: turn the camera to and fro faster",
@@ -110,12 +112,21 @@ InertialCalibration calibrateInertialUnit(const std::vector<PosedCamera>& poses,
     return calibration;
   }
   calibration.fit = *fit;
+  calibration.forces = fitForces(poses, samples, unitWith(known, fit->parameters),
+                                 fit->covariance.topLeftCorner<3, 3>(), fit->parameters.rate_bias);
   calibration.problem = accuracyProblem(*fit);
   if (!hasTurnedAbout(rough, 2)) {
     calibration.unchecked = "the camera hardly turns about " + axisText(rough.axes.col(2)) +
                             ": a wrong sign of one of the gyroscope's axes would not be noticed";
   }
   return calibration;
+}
+
+InertialUnit unitWith(const InertialUnit& known, const TurnParameters& found) {
+  InertialUnit unit = known;
+  unit.imu_T_camera.rotation = found.imu_R_camera;
+  unit.offset_ns = std::llround(found.offset_s * 1e9);
+  return unit;
 }
 
 Eigen::Vector3d rotationSigma(const TurnFit& fit) { return fit.covariance.diagonal().head<3>().cwiseSqrt(); }

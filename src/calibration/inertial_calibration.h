@@ -2,26 +2,32 @@
 // comparing how it turned in its map with what the gyroscope felt.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calibration/camera_turns.h"
+#include "calibration/force_fit.h"
 #include "calibration/turn_fit.h"
 #include "inertia/inertial_unit.h"
 
 namespace edgeslam {
 
 struct InertialCalibration {
-  std::string problem;    // why the recording does not say; empty where it does
-  TurnFit fit;            // means nothing where there is a problem
-  double turn_s = 0;      // how long the turns of `fit` last
-  std::string unchecked;  // what it could not tell all the same, for people; empty: nothing
+  std::string problem;             // why the recording does not say; empty where it does
+  TurnFit fit;                     // means nothing where there is a problem
+  double turn_s = 0;               // how long the turns of `fit` last
+  std::optional<ForceFit> forces;  // none where the camera's way says nothing of them
+  std::string unchecked;           // what it could not tell all the same, for people; empty: nothing
 };
 
-// Times of `poses` ascend, and those of `samples`; there are some of both. What counts of what is known of the unit is
-// its offset, to half a second, and how its gyroscope's bias walks.
+// Times of `poses` ascend, and those of `samples`; there are some of both. Of what is known of the unit count its
+// offset, to half a second, where it is, to some centimetres, and how its gyroscope's bias walks.
 InertialCalibration calibrateInertialUnit(const std::vector<PosedCamera>& poses,
                                           const std::vector<InertialSample>& samples, const InertialUnit& known);
+
+// The unit with rotation and offset as they were found.
+InertialUnit unitWith(const InertialUnit& known, const TurnParameters& found);
 
 // Standard deviations of a fit.
 Eigen::Vector3d rotationSigma(const TurnFit& fit);  // about the camera's x, y and z [rad]

@@ -13,9 +13,6 @@ struct KnownUnit {
   bool has_place = false;  // else unit.imu_T_camera means nothing
 };
 
-// The unit with what was found of it.
-InertialUnit unitWith(const InertialUnit& known, const InertialCalibration& calibration);
-
 // imu.yaml, which readInertialUnit reads, with standard deviations in comments. `source`: of the frames.
 std::string inertialUnitText(const KnownUnit& known, const InertialCalibration& calibration, const std::string& source);
 

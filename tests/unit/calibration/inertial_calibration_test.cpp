@@ -126,8 +126,17 @@ TEST(InertialCalibration, ItsFileIsReadAsTheUnit) {
   EXPECT_NEAR(static_cast<double>(unit.offset_ns) * 1e-9, found.fit.parameters.offset_s, 1e-6);
   EXPECT_EQ(unit.rate_noise, 3e-4);
   EXPECT_EQ(unit.camera_readout_s, 0.02);
-  const std::string summary = inertialSummary({known.unit, false}, found);
-  EXPECT_NE(summary.find("none was given"), std::string::npos) << summary;
+}
+
+TEST(InertialCalibration, WhereNoPlaceWasGivenItsFileHasTheOneThatWasFound) {
+  const TurningCamera camera;
+  const InertialCalibration found = calibrated(camera);
+  const KnownUnit known{unitOf(camera), false};
+  EXPECT_NE(inertialSummary(known, found).find("none was given"), std::string::npos);
+  const TemporaryFolder folder;
+  folder.write("imu.yaml", inertialUnitText(known, found, "recording"));
+  const InertialUnit unit = readInertialUnit(folder.path("imu.yaml"));
+  EXPECT_LT((unit.imu_T_camera.translation - camera.imu_t_camera).norm(), 0.01);
 }
 
 }  // namespace
