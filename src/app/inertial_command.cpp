@@ -94,6 +94,11 @@ std::vector<PosedCamera> posesBeforeBoard(FrameSource& source, const Camera& cam
   return poses;
 }
 
+int refused(const InertialCommand& command, const std::string& problem) {
+  std::cerr << "edgeslam: " << command.input << ": the recording does not tell how the unit sits: " << problem << "\n";
+  return exit_failed;
+}
+
 }  // namespace
 
 int calibrateUnit(const InertialCommand& command) {
@@ -106,12 +111,9 @@ int calibrateUnit(const InertialCommand& command) {
   const std::optional<Board> board = command.board.empty() ? std::nullopt : std::optional(parseBoard(command.board));
   const std::vector<PosedCamera> poses =
       board ? posesBeforeBoard(*source, camera, *board) : posesInMap(*source, camera, configuration.settings);
+  if (poses.empty()) return refused(command, board ? "the board is found in no frame" : "no map came to stand");
   const InertialCalibration calibration = calibrateInertialUnit(poses, samples, known.unit);
-  if (!calibration.problem.empty()) {
-    std::cerr << "edgeslam: " << command.input
-              << ": the recording does not tell how the unit sits: " << calibration.problem << "\n";
-    return exit_failed;
-  }
+  if (!calibration.problem.empty()) return refused(command, calibration.problem);
   std::cout << command.input << ": " << inertialSummary(known, calibration);
   if (!command.output.empty()) {
     writeFileAtomically(command.output, inertialUnitText(known, calibration, command.input));

@@ -19,6 +19,9 @@ PLACEHOLDERS = "words in capitals stand for something"
 NO_CAMERA = "no camera is there: a recording stands for it, as capture.device may name one"
 # Widths and frames are small, so that all of it takes a minute.
 SMALL = "--width 160 --height 120 --frames 3"
+# Long enough to tell how the unit sits.
+SIMULATED_SWINGING = ("edgeslam simulate panels_textured --output swinging --width 320 --height 240 --frames 400 --imu "
+                      "--force")
 
 INSTEAD = {
     "edgeslam run --config FILE [--source INPUT] [--record DIR] [--map-in FILE] [--map-out FILE]": Instead(
@@ -76,6 +79,15 @@ INSTEAD = {
     "edgeslam calibrate --readout RECORDING": Instead(
         PLACEHOLDERS + "; of this one's few frames none tells the readout", ["edgeslam calibrate --readout my_recording"],
         exit_code=1, says="does not tell the readout"),
+    "edgeslam calibrate --imu RECORDING [--config FILE] [--output imu.yaml] [--force]": Instead(
+        SYNOPSIS, [SIMULATED_SWINGING, "edgeslam calibrate --imu swinging --config my_robot.yaml --output imu.yaml --force"]),
+    "edgeslam calibrate --imu RECORDING --board BOARD [--config FILE] [--output imu.yaml] [--force]": Instead(
+        SYNOPSIS + "; this one shows no board",
+        ["edgeslam calibrate --imu swinging --board chessboard:9x6:25mm --config my_robot.yaml --output board_imu.yaml --force"],
+        exit_code=1, says="the board is found in no frame"),
+    "edgeslam calibrate --imu my_recording --output imu.yaml": Instead(
+        "this one has few frames and no inertial data",
+        [SIMULATED_SWINGING, "edgeslam calibrate --imu swinging --output imu.yaml"]),
     "edgeslam map info FILE... [--picture PNG] [--json] [--force]": Instead(
         SYNOPSIS, ["edgeslam map info saved.map robot.map", "edgeslam map info robot.map --json --picture robot.png --force"]),
     "edgeslam map join FILE FILE... --output FILE [--config FILE] [--force]": Instead(
