@@ -15,6 +15,7 @@
 #include "configuration/input_configuration.h"
 #include "files/atomic_file.h"
 #include "frames/frame_problem.h"
+#include "inertia/inertial_history.h"
 #include "pipeline/lockstep_run.h"
 #include "recording/open_frame_source.h"
 #include "recording/recording_source.h"
@@ -22,13 +23,19 @@
 namespace edgeslam {
 namespace {
 
+// Without those that no run uses, either: beyond what any unit measures, or not after the one before.
 std::vector<InertialSample> samplesBeside(const FrameSource& source) {
-  const Recording* recording = source.recording();
-  if (!recording) return readInertialSamples(source.inertialFiles());
-  std::vector<InertialSample> samples;
-  for (const InertiaGiven& given : recording->decisions.inertia) samples.push_back(given.sample);
-  if (samples.empty()) throw InputError(recording->folder + ": the run was recorded without inertial data");
-  return samples;
+  std::vector<InertialSample> samples, usable;
+  if (const Recording* recording = source.recording()) {
+    for (const InertiaGiven& given : recording->decisions.inertia) samples.push_back(given.sample);
+    if (samples.empty()) throw InputError(recording->folder + ": the run was recorded without inertial data");
+  } else {
+    samples = readInertialSamples(source.inertialFiles());
+  }
+  for (const InertialSample& sample : samples) {
+    if (isUsable(sample) && (usable.empty() || sample.time_ns > usable.back().time_ns)) usable.push_back(sample);
+  }
+  return usable;
 }
 
 // The configuration's unit, or else the one beside the frames; without either the default noise.

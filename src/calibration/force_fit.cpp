@@ -7,7 +7,7 @@
 #include <iterator>
 #include <map>
 
-#include "geometry/median.h"
+#include "calibration/pose_errors.h"
 #include "geometry/tangents.h"
 #include "inertia/inertial_history.h"
 #include "samples/sample_feed.h"
@@ -17,11 +17,8 @@ namespace {
 
 constexpr double step_s = 0.3;  // between three poses
 constexpr std::size_t fewest_changes = 100;
-constexpr std::int64_t longest_part_ns = 2'000'000'000, fewest_parts = 12;  // as in turn_fit.cpp
 constexpr double place_prior_m = 0.1;  // a unit is no farther from where it is said to be
 constexpr double bias_prior = 0.5;     // [m/s^2]
-constexpr double outlier_medians = 4;  // as in turn_fit.cpp
-constexpr double unseen = 1.5;         // likewise
 constexpr int iterations = 12;
 constexpr double largest_scale_sigma = 0.05, largest_bias_sigma = 0.05, largest_place_sigma_m = 0.01;
 
@@ -147,7 +144,7 @@ std::optional<Unknowns> startOf(const std::vector<SpeedChange>& changes, const E
   return start;
 }
 
-// Of the errors, with little weight to those of frames that were posed wrongly (Cauchy's weights).
+// Of the errors.
 struct Weights {
   std::vector<double> of;
   double variance = 0;  // of an error, each axis [m^2/s^2]
@@ -157,16 +154,14 @@ Weights weightsOf(const std::vector<SpeedChange>& changes, const Unknowns& x) {
   std::vector<double> lengths;
   lengths.reserve(changes.size());
   for (const SpeedChange& change : changes) lengths.push_back(errorOf(change, x).norm());
-  const double bound = std::max(1e-9, outlier_medians * medianOr(0.0, lengths));
   Weights weights;
-  weights.of.reserve(changes.size());
-  double sum = 0;
-  for (const double length : lengths) {
-    weights.of.push_back(1 / (1 + length * length / (bound * bound)));
-    weights.variance += weights.of.back() * length * length;
-    sum += weights.of.back();
+  weights.of = cauchyWeights(lengths);
+  double squares = 0, sum = 0;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    squares += weights.of[i] * lengths[i] * lengths[i];
+    sum += weights.of[i];
   }
-  weights.variance = std::max(1e-12, weights.variance / (3 * sum));
+  weights.variance = std::max(1e-12, squares / (3 * sum));
   return weights;
 }
 
@@ -187,8 +182,7 @@ NormalEquations normalEquations(const std::vector<SpeedChange>& changes, const U
                                 const Eigen::Vector3d& camera_t_imu) {
   const Weights weights = weightsOf(changes, x);
   const std::int64_t begin_ns = changes.front().from_ns;
-  const std::int64_t part_ns =
-      std::min<std::int64_t>(longest_part_ns, (changes.back().from_ns - begin_ns) / fewest_parts) + 1;
+  const std::int64_t part_ns = partLength(begin_ns, changes.back().from_ns);
   NormalEquations equations;
   std::map<std::int64_t, Vector9> parts;
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -201,7 +195,7 @@ NormalEquations normalEquations(const std::vector<SpeedChange>& changes, const U
   }
   for (const auto& [number, gradient] : parts) equations.scatter += gradient * gradient.transpose();
   const double count = static_cast<double>(parts.size());
-  equations.scatter *= unseen * unseen * count / std::max(1.0, count - unknowns);
+  equations.scatter *= unseen_times * unseen_times * count / std::max(1.0, count - unknowns);
   const Vector9 prior = priorInformation();
   equations.information.diagonal() += prior;
   equations.scatter.diagonal() += prior;

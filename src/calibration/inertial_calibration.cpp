@@ -107,8 +107,9 @@ InertialCalibration calibrateInertialUnit(const std::vector<PosedCamera>& poses,
   const std::optional<TurnFit> fit =
       fitTurns(turns, samples, {rough.imu_R_camera, rough.rate_bias, rough.offset_s}, known.rate_walk);
   if (!fit || fit->seconds < shortest_s) {
-    calibration.problem = formatted("camera and inertial unit have %.1f s in common, %.0f s are needed",
-                                    fit ? fit->seconds : 0.0, shortest_s);
+    calibration.problem = "camera and inertial unit have " +
+                          (fit ? formatted("%.1f s", fit->seconds) : std::string("too little time")) +
+                          formatted(" in common, %.0f s are needed", shortest_s);
     return calibration;
   }
   calibration.fit = *fit;

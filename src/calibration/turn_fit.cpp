@@ -4,21 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/pose_errors.h"
 #include "calibration/turn_alignment.h"
-#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
 
 constexpr int most_iterations = 20;
-constexpr double outlier_medians = 4;  // so many medians off, an error has half its weight
-// Of the recording: errors of poses further apart than these have little to do with each other.
-constexpr double longest_part_s = 2;
-constexpr std::int64_t fewest_parts = 12;
-// A map's poses err with the motion, too, in the same way in all parts: over ten sequences with known truth, what is
-// found was off by so many times what the scatter of the parts says.
-constexpr double unseen = 1.5;
-
+constexpr std::size_t unknowns = 7;
 struct TimedError {
   std::int64_t from_ns = 0;
   double seconds = 0;
@@ -37,15 +30,11 @@ std::vector<TimedError> errorsOf(const std::vector<CameraTurn>& turns, const std
   return errors;
 }
 
-// Frames that were posed wrongly count little (Cauchy's weights).
 std::vector<double> weightsOf(const std::vector<TimedError>& errors) {
-  std::vector<double> lengths, weights;
+  std::vector<double> lengths;
   lengths.reserve(errors.size());
-  weights.reserve(errors.size());
   for (const TimedError& timed : errors) lengths.push_back(timed.turn.error.norm());
-  const double bound = std::max(1e-9, outlier_medians * upperMedian(lengths));
-  for (const TimedError& timed : errors) weights.push_back(1 / (1 + timed.turn.error.squaredNorm() / (bound * bound)));
-  return weights;
+  return cauchyWeights(lengths);
 }
 
 struct NormalEquations {
@@ -65,8 +54,7 @@ NormalEquations normalEquations(const std::vector<TimedError>& errors, const std
 
 // Gradients of parts of the recording one after another: at the solution they add up to nothing, and scatter.
 std::vector<Vector7d> gradientsOfParts(const std::vector<TimedError>& errors, const std::vector<double>& weights) {
-  const std::int64_t whole_ns = errors.back().from_ns - errors.front().from_ns;
-  const std::int64_t part_ns = std::min<std::int64_t>(std::llround(longest_part_s * 1e9), whole_ns / fewest_parts) + 1;
+  const std::int64_t part_ns = partLength(errors.front().from_ns, errors.back().from_ns);
   std::vector<Vector7d> gradients;
   std::int64_t part = -1;
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -112,7 +100,7 @@ Matrix7d scatterOf(const std::vector<Vector7d>& gradients) {
   Matrix7d scatter = Matrix7d::Zero();
   for (const Vector7d& gradient : gradients) scatter += gradient * gradient.transpose();
   const double parts = static_cast<double>(gradients.size());
-  return unseen * unseen * parts / (parts - 7) * scatter;
+  return unseen_times * unseen_times * parts / (parts - unknowns) * scatter;
 }
 
 double coveredSeconds(const std::vector<TimedError>& errors) {
@@ -172,7 +160,7 @@ std::optional<TurnFit> fitTurns(const std::vector<CameraTurn>& turns, const std:
     const NormalEquations equations = normalEquations(errors, weights);
     const std::optional<Matrix7d> inverse = inverseOf(equations.information);
     const std::vector<Vector7d> gradients = gradientsOfParts(errors, weights);
-    if (!inverse || gradients.size() < 8) return std::nullopt;
+    if (!inverse || gradients.size() <= unknowns) return std::nullopt;
     const Matrix7d scatter = scatterOf(gradients) + gradientOfWalk(errors, weights, rate_walk);
     fit.covariance = *inverse * scatter * *inverse;
     fit.turns = errors.size();

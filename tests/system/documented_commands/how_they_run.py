@@ -85,6 +85,8 @@ INSTEAD = {
         SYNOPSIS + "; this one shows no board",
         ["edgeslam calibrate --imu swinging --board chessboard:9x6:25mm --config my_robot.yaml --output board_imu.yaml --force"],
         exit_code=1, says="the board is found in no frame"),
+    "edgeslam calibrate --imu": Instead(
+        "the name of this way of calibrating", ["edgeslam calibrate --imu"], exit_code=2, says="INPUT is required"),
     "edgeslam calibrate --imu my_recording --output imu.yaml": Instead(
         "this one has few frames and no inertial data",
         [SIMULATED_SWINGING, "edgeslam calibrate --imu swinging --output imu.yaml"]),

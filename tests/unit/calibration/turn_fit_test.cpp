@@ -68,6 +68,29 @@ TEST(TurnFit, ErrsAsItsStandardDeviationsSay) {
   EXPECT_GT(squares.minCoeff(), 0.1) << squares.transpose();
 }
 
+TEST(TurnFit, AllowsForABiasThatWalks) {
+  TurningCamera camera;
+  camera.rate_walk = 1e-3;
+  camera.pace = 0.2;  // as slowly as the bias
+  camera.swing_rad = {0.5, 0.6, 0.4};
+  double farthest = 0, farthest_without = 0;
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    const std::vector<CameraTurn> turns = cameraTurns(camera.poses(seed), 0.2);
+    const std::vector<InertialSample> samples = camera.samples(seed);
+    const auto fit = fitTurns(turns, samples, truth(camera), camera.rate_walk);
+    const auto without = fitTurns(turns, samples, truth(camera), 0);
+    ASSERT_TRUE(fit && without);
+    const Eigen::Vector3d error = changeBetween(truth(camera), fit->parameters).head<3>();
+    const auto multiples = [&](const TurnFit& told) {
+      return error.cwiseQuotient(told.covariance.diagonal().head<3>().cwiseSqrt()).cwiseAbs().maxCoeff();
+    };
+    farthest = std::max(farthest, multiples(*fit));
+    farthest_without = std::max(farthest_without, multiples(*without));
+  }
+  EXPECT_LT(farthest, 3);
+  EXPECT_GT(farthest_without, 1.2 * farthest) << "it makes a difference";
+}
+
 TEST(TurnFit, FramesThatWerePosedWronglyCountLittle) {
   const TurningCamera camera;
   std::vector<PosedCamera> poses = camera.poses(1);

@@ -13,6 +13,7 @@ namespace edgeslam::test {
 
 struct TurningCamera {
   Eigen::Vector3d swing_rad = Eigen::Vector3d(0.25, 0.3, 0.2);  // about the camera's axes
+  double pace = 1;                                              // of turning
   double seconds = 20;
   double frame_rate_hz = 30, sample_rate_hz = 200;
   double pose_noise_rad = 3e-4, rate_noise = 2e-4, rate_walk = 2e-5;  // as InertialUnit's
@@ -26,7 +27,8 @@ struct TurningCamera {
   Eigen::Vector3d force_bias = Eigen::Vector3d(0.1, -0.05, 0.08);  // [m/s^2]
 
   Eigen::Quaterniond orientationAt(double time_s) const {
-    const Eigen::Vector3d turned(std::sin(3.1 * time_s), std::sin(2.3 * time_s + 1), std::sin(4.3 * time_s + 2));
+    const double phase = pace * time_s;
+    const Eigen::Vector3d turned(std::sin(3.1 * phase), std::sin(2.3 * phase + 1), std::sin(4.3 * phase + 2));
     return rotationExp(swing_rad.cwiseProduct(turned));
   }
   // Of the camera, its own frame [rad/s].
