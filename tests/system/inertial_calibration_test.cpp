@@ -60,6 +60,17 @@ TEST_F(InertialCalibrationRun, FindsRotationAndOffsetInAMap) {
   EXPECT_NE(again.failures()[0].find("--force"), std::string::npos);
 }
 
+TEST_F(InertialCalibrationRun, FindsThemFromAFlightRecording) {
+  useFrames();
+  const std::string recorded = folder_.path("recorded");
+  const Outcome run = runProgram({"replay", recording_, "--imu", "--realtime", "--pace", "2", "--record", recorded,
+                                  "--output", folder_.path("run"), "--drawings", "0"});
+  ASSERT_EQ(run.exit_code, 0) << run.messages;
+  const Outcome outcome = runProgram({"calibrate", "--imu", recorded, "--output", output_});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.messages;
+  expectFound(clocks_differ_ns);
+}
+
 TEST_F(InertialCalibrationRun, RefusesTurnsAboutOneAxis) {
   const Outcome made = runProgram({"simulate", "corridor", "--frames", "250", "--width", "320", "--height", "240",
                                    "--imu", "--output", recording_});
