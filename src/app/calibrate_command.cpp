@@ -161,7 +161,9 @@ void addBoardCommand(CLI::App& calibrate_command, int& exit_code) {
 void addCalibrateCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command =
-      app.add_subcommand("calibrate", "Calibrate a camera with a printed board; `calibrate board` makes one");
+      app.add_subcommand("calibrate",
+                         "Calibrate a camera with a printed board, which `calibrate board` makes, or find its "
+                         "readout or inertial unit");
   CLI::Option* input =
       command->add_option("INPUT", options->input, "Recording, video, or folder of images; not given: the live camera");
   CLI::Option* camera = command->add_option("--camera", options->camera, "Live camera, as `edgeslam cameras` names it");

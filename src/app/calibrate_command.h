@@ -1,4 +1,5 @@
-// `edgeslam calibrate`: a camera's calibration from views of a printed board, and the board to print.
+// `edgeslam calibrate`: a camera's calibration from views of a printed board, and the board to print; a readout, and
+// how an inertial unit sits, from a recording.
 #pragma once
 
 namespace CLI {

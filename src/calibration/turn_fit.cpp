@@ -12,6 +12,7 @@ namespace {
 
 constexpr int most_iterations = 20;
 constexpr std::size_t unknowns = 7;
+
 struct TimedError {
   std::int64_t from_ns = 0;
   double seconds = 0;
