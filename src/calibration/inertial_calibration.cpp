@@ -83,7 +83,7 @@ std::string accuracyProblem(const TurnFit& fit) {
   const double worst = std::sqrt(spread.eigenvalues()(2));
   if (worst > largest_rotation_sigma) {
     return formatted(
-        "the rotation about %s is known to %.1f degrees only: turn the camera more about the others, before more "
+        "the rotation about %s is known to %.2f degrees only: turn the camera more about the others, before more "
         "texture",
         axisText(spread.eigenvectors().col(2)).c_str(), degrees(worst));
   }
