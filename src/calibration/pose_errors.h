@@ -9,7 +9,7 @@
 
 namespace edgeslam {
 
-// Poses err in a map with the motion, too, in the same way throughout: over ten sequences with known truth, rotations
+// Poses err in a map with the motion, too, in the same way throughout: over eight sequences with known truth, rotations
 // and offsets were off by 1.3 times what the scatter of parts says; so many times are told.
 constexpr double unseen_times = 1.5;
 
