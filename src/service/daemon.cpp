@@ -94,6 +94,7 @@ void Daemon::oneRun() {
   if (map_) run.goOnWith(std::move(*map_));
   map_.reset();
   publisher_->begin(run, recorder, start_);
+  camera_->keepJpeg(recorder != nullptr);
   run.start();
   if (!std::exchange(processors_told_, true)) tellProcessorProblems(run);
   setUpThread({"capture", settings.threads.capture_priority, 0, false, {}});
