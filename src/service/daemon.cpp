@@ -15,7 +15,10 @@ constexpr auto longest_wait = std::chrono::milliseconds(100);  // for a frame, b
 }  // namespace
 
 Daemon::Daemon(DaemonSetup setup, EventLog& log)
-    : setup_(std::move(setup)), log_(log), next_recording_(setup_.configuration, setup_.camera, link_, log) {
+    : setup_(std::move(setup)),
+      log_(log),
+      deadline_(log),
+      next_recording_(setup_.configuration, setup_.camera, link_, log) {
   for (const std::string& problem : startProblems(startNeeds(setup_))) log_.tell(problem);
   if (const std::string presumed = presumedLens(setup_.configuration); !presumed.empty()) log_.tell(presumed);
   openCamera();
@@ -99,6 +102,7 @@ void Daemon::oneRun() {
   if (!std::exchange(processors_told_, true)) tellProcessorProblems(run);
   setUpThread({"capture", settings.threads.capture_priority, 0, false, {}});
   const RunEnd end = capture(run);
+  if (signals_.end()) deadline_.begin();
   setUpThread({"edgeslam", 0, 0, false, {}});  // for the threads to come
   if (!end.command) publisher_->service().stopping();
   run.stop(end.settles);
@@ -168,7 +172,10 @@ void Daemon::beginNext(const Command& command, LiveRun& run) {
 }
 
 void Daemon::finish(const Map& map) {
-  if (setup_.for_viewing && !signals_.end()) page_->showUntilSignal(map);
+  if (setup_.for_viewing && !signals_.end()) {
+    page_->showUntilSignal(map);
+    deadline_.begin();
+  }
   if (!setup_.map_out.empty()) writeMap(map);
   const PublisherStatus totals = publisher_->status();
   log_.tell("ended after " + std::to_string(totals.frames_captured) + " frames, " +

@@ -13,6 +13,7 @@
 #include "service/daemon_page.h"
 #include "service/daemon_setup.h"
 #include "service/daemon_signals.h"
+#include "service/end_deadline.h"
 #include "service/event_log.h"
 #include "service/frame_intake.h"
 #include "service/next_recording.h"
@@ -55,6 +56,7 @@ class Daemon {
   DaemonSignals signals_;  // first: threads inherit what is blocked
   DaemonSetup setup_;
   EventLog& log_;
+  EndDeadline deadline_;  // before all that may wait for the disk
   CaptureLink link_;
   std::unique_ptr<ReopeningCamera> camera_;
   std::unique_ptr<DaemonPage> page_;
