@@ -1,6 +1,7 @@
 #include "service/daemon.h"
 
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include "drivers/cameras/open_camera.h"
@@ -102,7 +103,7 @@ void Daemon::oneRun() {
   if (!std::exchange(processors_told_, true)) tellProcessorProblems(run);
   setUpThread({"capture", settings.threads.capture_priority, 0, false, {}});
   const RunEnd end = capture(run);
-  if (signals_.end()) deadline_.begin();
+  if (signals_.end() || reserve_.isUsed()) deadline_.begin();
   setUpThread({"edgeslam", 0, 0, false, {}});  // for the threads to come
   if (!end.command) publisher_->service().stopping();
   run.stop(end.settles);
@@ -128,7 +129,7 @@ void Daemon::tellReadout() {
 }
 
 Daemon::RunEnd Daemon::capture(LiveRun& run) {
-  while (!signals_.end()) {
+  while (!signals_.end() && !reserve_.isUsed()) {
     if (signals_.takeMapWish()) link_.askForMapToBeSaved();
     if (next_recording_.isUnderway()) {
       next_recording_.seeToPreparation();
@@ -172,7 +173,7 @@ void Daemon::beginNext(const Command& command, LiveRun& run) {
 }
 
 void Daemon::finish(const Map& map) {
-  if (setup_.for_viewing && !signals_.end()) {
+  if (setup_.for_viewing && !signals_.end() && !reserve_.isUsed()) {
     page_->showUntilSignal(map);
     deadline_.begin();
   }
@@ -181,6 +182,7 @@ void Daemon::finish(const Map& map) {
   log_.tell("ended after " + std::to_string(totals.frames_captured) + " frames, " +
             std::to_string(totals.frames_dropped) + " of them dropped, " + std::to_string(totals.frames_unreadable) +
             " unreadable");
+  if (reserve_.isUsed()) throw std::bad_alloc();
 }
 
 void Daemon::writeMap(const Map& map) {
