@@ -170,9 +170,16 @@ void endBeforeMissingFrames(DecisionLines& lines, const Recording& recording) {
   lines.decisions.resize(end);
 }
 
+// By its header, which a decoder would make room for; as in any frame that a camera sent whole.
+bool isJpegOfSize(const std::string& bytes, cv::Size size) {
+  if (imageFormat(bytes) != ImageFormat::jpeg || !canHoldItsSize(bytes)) return false;
+  const std::optional<ClaimedSize> claimed = claimedSize(bytes);
+  return claimed && claimed->width == size.width && claimed->height == size.height;
+}
+
 // As the live run saw it: what a camera sent is decoded by what decoded it then.
 DecodedImage decodeFrame(const std::string& bytes, const ExpectedSize& expected, JpegDecoder& jpeg) {
-  if (imageFormat(bytes) != ImageFormat::jpeg) return decodeGreyImage(bytes, expected);
+  if (!isJpegOfSize(bytes, expected.size)) return decodeGreyImage(bytes, expected);
   cv::Mat grey(expected.size, CV_8U);
   const std::string problem = jpeg.decode(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), grey);
   return {problem.empty() ? grey : cv::Mat(), problem};

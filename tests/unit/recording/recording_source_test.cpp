@@ -394,7 +394,7 @@ TEST_F(RecordingSourceTest, AJpegThatIsBrokenIsAProblemOfItsFrame) {
   writer.close();
   RecordingSource source(readRecording(folder.path("sent")));
   EXPECT_NE(source.next()->problem.find("rgb.tar: at byte 512: a broken JPEG"), std::string::npos);
-  EXPECT_NE(source.next()->problem.find("expected 32 x 24"), std::string::npos);
+  EXPECT_NE(source.next()->problem.find("is 32 x 25 pixels"), std::string::npos);
   EXPECT_EQ(source.next()->problem, "");
 }
 
