@@ -187,8 +187,11 @@ Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Confi
   std::unique_ptr<RunPublisher> publisher;
   if (arguments.lcm) publisher = std::make_unique<RunPublisher>(publishingSetup(configuration, camera), link, log);
   replay.publisher = publisher.get();
+  const MemoryReserve reserve;
+  replay.is_to_end = [&] { return reserve.isUsed(); };
   LiveReplayResult live = replayLive(source, camera, configuration.settings, replay);
   progress.end();
+  if (reserve.isUsed()) endWithoutMemory(live.map, camera, arguments.map_out);
   if (!live.recording.empty()) std::cerr << "edgeslam: " << arguments.record << ": " << live.recording << "\n";
   return {std::move(live.run), std::move(live.map)};
 }

@@ -49,15 +49,20 @@ TEST_F(MemoryOfARun, WhereItEndsTheMapIsSavedAndTheRecordingWhole) {
 }
 
 TEST_F(MemoryOfARun, WhereItEndsInAReplayTheMapIsSavedAndNoHalfResults) {
-  BackgroundProcess replay(
-      {EDGESLAM_PROGRAM, "replay", source_, "--output", folder_.path("result"), "--map-out", map_});
-  ASSERT_TRUE(comesTrue([&] { return replay.processorTime() > 2; })) << replay.said();  // over a hundred frames
-  endMemoryOf(replay);
-  EXPECT_EQ(replay.exitCode(), 1) << replay.said();
-  EXPECT_EQ(replay.times("edgeslam: out of memory"), 1) << replay.said();
-  EXPECT_EQ(replay.times(" keyframes saved to " + map_ + ", as it was when memory ran out"), 1) << replay.said();
-  EXPECT_FALSE(loadMap(map_, *openFrameSource(source_)->camera()).points.empty());
-  EXPECT_FALSE(std::filesystem::exists(folder_.path("result")));
+  for (const Options& how : {Options{}, Options{"--realtime", "--pace", "2"}}) {
+    SCOPED_TRACE(how.size());
+    std::filesystem::remove(map_);
+    Options command{EDGESLAM_PROGRAM, "replay", source_, "--output", folder_.path("result"), "--map-out", map_};
+    command.insert(command.end(), how.begin(), how.end());
+    BackgroundProcess replay(command);
+    ASSERT_TRUE(comesTrue([&] { return replay.processorTime() > 2; })) << replay.said();  // over a hundred frames
+    endMemoryOf(replay);
+    EXPECT_EQ(replay.exitCode(), 1) << replay.said();
+    EXPECT_EQ(replay.times("edgeslam: out of memory"), 1) << replay.said();
+    EXPECT_EQ(replay.times(" keyframes saved to " + map_ + ", as it was when memory ran out"), 1) << replay.said();
+    EXPECT_FALSE(loadMap(map_, *openFrameSource(source_)->camera()).points.empty());
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("result")));
+  }
 }
 
 }  // namespace
