@@ -9,6 +9,8 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
+#include "image_formats/jpeg_decoder.h"
+
 namespace edgeslam {
 
 // What a frame's time stamp is the time of, for messages: the best that the driver tells.
@@ -35,6 +37,7 @@ struct Capture {
   CaptureEvent event = CaptureEvent::none_yet;
   CapturedFrame frame;
   std::string message;
+  CameraJpeg jpeg = nullptr;  // of a frame, where the camera sent one and it is kept (LiveCamera::keepJpeg)
 };
 
 struct StreamDescription {
@@ -54,6 +57,8 @@ class LiveCamera {
   // is not). After `interrupted` the camera must be opened anew.
   virtual Capture next(cv::Mat& grey, std::chrono::nanoseconds timeout) = 0;
   virtual const StreamDescription& stream() const = 0;
+  // Whether frames that come as motion-JPEG are from now on given as they came, too. Until then they are not.
+  virtual void keepJpeg(bool /*keep*/) {}
 };
 
 struct OpenedCamera {

@@ -39,6 +39,11 @@ Capture ReopeningCamera::next(cv::Mat& grey, std::chrono::nanoseconds timeout) {
   return camera_ ? takeFrame(grey, timeout.count()) : tryToOpen(timeout.count());
 }
 
+void ReopeningCamera::keepJpeg(bool keep) {
+  keeps_jpeg_ = keep;
+  if (camera_) camera_->keepJpeg(keep);
+}
+
 Capture ReopeningCamera::takeFrame(cv::Mat& grey, std::int64_t timeout_ns) {
   const std::int64_t left_ns =
       stream_.is_recording ? timeout_ns : std::max<std::int64_t>(watch_.frozenAt() - clock_.now_ns(), 0);
@@ -97,6 +102,7 @@ Capture ReopeningCamera::tryToOpen(std::int64_t timeout_ns) {
                      std::to_string(stream_.width) + " x " + std::to_string(stream_.height));
   }
   camera_ = std::move(opened.camera);
+  camera_->keepJpeg(keeps_jpeg_);
   stream_ = camera_->stream();
   watch_.opened(clock_.now_ns(), stream_.frame_interval_ns);
   sequence_offset_ = last_sequence_ + 1;

@@ -33,6 +33,7 @@ class ReopeningCamera : public LiveCamera {
   // than `timeout` only where the driver does in opening.
   Capture next(cv::Mat& grey, std::chrono::nanoseconds timeout) override;
   const StreamDescription& stream() const override { return stream_; }
+  void keepJpeg(bool keep) override;
   bool isOpen() const { return camera_ != nullptr; }
 
  private:
@@ -49,6 +50,7 @@ class ReopeningCamera : public LiveCamera {
   std::string told_;    // the last reason that was told since the last frame
   std::string damage_;  // of the last damaged frame since the last good one
   bool after_interruption_ = false;
+  bool keeps_jpeg_ = false;
   std::int64_t sequence_offset_ = 0;  // of the stream in all frames of the camera
   std::int64_t last_sequence_ = -1;
   std::int64_t last_time_ns_ = -1;

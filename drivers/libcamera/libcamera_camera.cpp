@@ -19,6 +19,7 @@
 
 #include "drivers/frame_capture/exposure_middle.h"
 #include "drivers/frame_capture/grey_conversion.h"
+#include "drivers/frame_capture/kept_jpeg.h"
 #include "drivers/frame_capture/sequence_counter.h"
 #include "drivers/libcamera/control_values.h"
 #include "drivers/libcamera/frame_memory.h"
@@ -86,15 +87,17 @@ class LibcameraCamera : public LiveCamera {
       frame.lost_before += lost;
       frame.passed_over_before = passed_over;
     }
-    const std::string damage = readFrame(*request, frame, grey);
+    CameraJpeg jpeg;
+    const std::string damage = readFrame(*request, frame, grey, jpeg);
     if (const int error = giveBack(*request); error < 0) {
       return {CaptureEvent::interrupted, {}, stream_.camera + ": takes no more requests: " + errorText(error)};
     }
-    if (damage.empty()) return {CaptureEvent::frame, frame, ""};
+    if (damage.empty()) return {CaptureEvent::frame, frame, "", jpeg};
     return {CaptureEvent::damaged_frame, frame, "frame " + std::to_string(frame.sequence) + ": " + damage};
   }
 
   const StreamDescription& stream() const override { return stream_; }
+  void keepJpeg(bool keep) override { kept_jpeg_.keep(keep); }
 
  private:
   Problem acquire() {
@@ -226,7 +229,7 @@ class LibcameraCamera : public LiveCamera {
   }
 
   // Empty, or what is wrong with it.
-  std::string readFrame(libcamera::Request& request, CapturedFrame& frame, cv::Mat& grey) {
+  std::string readFrame(libcamera::Request& request, CapturedFrame& frame, cv::Mat& grey, CameraJpeg& jpeg) {
     const std::int64_t arrival_ns = clock_ns(CLOCK_MONOTONIC);
     const auto exposure_us = request.metadata().get(libcamera::controls::ExposureTime);
     std::optional<DriverStamp> stamp;
@@ -250,7 +253,9 @@ class LibcameraCamera : public LiveCamera {
     if (layout_.format == PixelFormat::mjpeg && !metadata.planes().empty()) {
       plane.size = std::min<std::size_t>(plane.size, metadata.planes()[0].bytesused);
     }
-    return convertToGrey(layout_, plane.data, plane.size, jpeg_, grey);
+    std::string damage = convertToGrey(layout_, plane.data, plane.size, jpeg_, grey);
+    if (damage.empty()) jpeg = kept_jpeg_.of(layout_.format, plane.data, plane.size);
+    return damage;
   }
 
   int giveBack(libcamera::Request& request) {
@@ -273,6 +278,7 @@ class LibcameraCamera : public LiveCamera {
   int wake_ = -1;
   SequenceCounter counter_;
   JpegDecoder jpeg_;
+  KeptJpeg kept_jpeg_;
 };
 
 }  // namespace

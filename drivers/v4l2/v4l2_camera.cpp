@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "drivers/frame_capture/exposure_middle.h"
+#include "drivers/frame_capture/kept_jpeg.h"
 #include "drivers/frame_capture/sequence_counter.h"
 #include "drivers/v4l2/buffer_queue.h"
 #include "drivers/v4l2/buffer_stamp.h"
@@ -74,6 +75,7 @@ class V4l2Camera : public LiveCamera {
   }
 
   const StreamDescription& stream() const override { return stream_; }
+  void keepJpeg(bool keep) override { kept_jpeg_.keep(keep); }
 
  private:
   // 0, -EAGAIN where the time is up, or the negative errno that ends the stream.
@@ -110,10 +112,12 @@ class V4l2Camera : public LiveCamera {
     frame.time_ns = time.time_ns;
     frame.time_meaning = time.meaning;
     std::string damage;
+    CameraJpeg jpeg;
     if ((buffer.flags & V4L2_BUF_FLAG_ERROR) != 0) {
       damage = "the driver marks it as broken";
     } else {
       damage = convertToGrey(layout_, buffer.data, buffer.size, jpeg_, grey);
+      if (damage.empty()) jpeg = kept_jpeg_.of(layout_.format, buffer.data, buffer.size);
     }
     if (damage.empty() && limited_exposure_) {
       limited_exposure_->see(*device_, grey);
@@ -122,7 +126,7 @@ class V4l2Camera : public LiveCamera {
     if (const int error = queue_.give(buffer.index); error < 0) {
       return interrupted(stream_.camera + ": does not take its buffer back: " + errorText(error));
     }
-    if (damage.empty()) return {CaptureEvent::frame, frame, ""};
+    if (damage.empty()) return {CaptureEvent::frame, frame, "", jpeg};
     return {CaptureEvent::damaged_frame, frame, "frame " + std::to_string(frame.sequence) + ": " + damage};
   }
 
@@ -136,6 +140,7 @@ class V4l2Camera : public LiveCamera {
   std::optional<LimitedExposure> limited_exposure_;
   SequenceCounter counter_;
   JpegDecoder jpeg_;
+  KeptJpeg kept_jpeg_;
 };
 
 OpenedCamera problem(const V4l2Problem& what) { return {nullptr, what.text, what.may_heal}; }

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <new>
 #include <opencv2/core/version.hpp>
 
 #include "app/command_line.h"
@@ -28,6 +29,7 @@
 #include "report/run_files.h"
 #include "samples/sample_feed.h"
 #include "service/live_replay.h"
+#include "service/memory_reserve.h"
 #include "service/run_publisher.h"
 #include "wheels/utime.h"
 
@@ -88,12 +90,12 @@ void requireReadoutWithin(const Camera& camera, double frame_interval_s) {
 }
 
 void processAll(FrameSource& source, const Camera& camera, const MeasuredBeside& measured, const Settings& settings,
-                LockstepRun& run) {
+                const MemoryReserve& reserve, LockstepRun& run) {
   SampleFeed inertia(measured.inertia, settings.tracking.inertia ? settings.tracking.inertia->offset_ns : 0);
   SampleFeed wheels(measured.wheels);
   ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;
-  while (std::optional<Frame> frame = source.next()) {
+  while (std::optional<Frame> frame = reserve.isUsed() ? std::nullopt : source.next()) {
     if (count++ == 0) first_ns = frame->time_ns;
     if (count == 2) requireReadoutWithin(camera, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
     const std::string problem = frameProblem(*frame, camera);
@@ -105,6 +107,24 @@ void processAll(FrameSource& source, const Camera& camera, const MeasuredBeside&
     progress.show(record, count, static_cast<double>(frame->time_ns - first_ns) * 1e-9);
   }
   progress.end();
+}
+
+void saveMapOf(const Map& map, const Camera& camera, const std::string& path) {
+  if (map.points.empty()) {
+    std::cerr << "edgeslam: " << path << " is not written: no map came to stand\n";
+  } else {
+    saveMap(path, camera, map);
+  }
+}
+
+// With what was mapped until then; there are no results of half a run.
+[[noreturn]] void endWithoutMemory(const Map& map, const Camera& camera, const std::string& map_out) {
+  if (!map_out.empty() && !map.points.empty()) {
+    saveMap(map_out, camera, map);
+    std::cerr << "edgeslam: map of " << map.keyframes.size() << " keyframes saved to " << map_out
+              << ", as it was when memory ran out\n";
+  }
+  throw std::bad_alloc();
 }
 
 // A run and the map that it leaves.
@@ -128,6 +148,7 @@ std::string mapToGoOnWith(const ReplayArguments& arguments, const FrameSource& s
 
 Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Settings& settings,
                           const MeasuredBeside& measured, const ReplayArguments& arguments) {
+  const MemoryReserve reserve;
   LockstepRun run(camera, settings, source.size(), arguments.drawings);
   if (const Recording* recording = source.recording()) {
     const Decisions& decisions = recording->decisions;
@@ -136,7 +157,8 @@ Replayed replayInLockstep(FrameSource& source, const Camera& camera, const Setti
   }
   if (const std::string map = mapToGoOnWith(arguments, source, settings); !map.empty())
     run.goOnWith(loadMap(map, camera));
-  processAll(source, camera, measured, settings, run);
+  processAll(source, camera, measured, settings, reserve, run);
+  if (reserve.isUsed()) endWithoutMemory(run.map(), camera, arguments.map_out);
   Replayed replayed;
   replayed.result = run.finish();
   replayed.map = run.map();
@@ -165,18 +187,13 @@ Replayed replayInRealTime(FrameSource& source, const Camera& camera, const Confi
   std::unique_ptr<RunPublisher> publisher;
   if (arguments.lcm) publisher = std::make_unique<RunPublisher>(publishingSetup(configuration, camera), link, log);
   replay.publisher = publisher.get();
+  const MemoryReserve reserve;
+  replay.is_to_end = [&] { return reserve.isUsed(); };
   LiveReplayResult live = replayLive(source, camera, configuration.settings, replay);
   progress.end();
+  if (reserve.isUsed()) endWithoutMemory(live.map, camera, arguments.map_out);
   if (!live.recording.empty()) std::cerr << "edgeslam: " << arguments.record << ": " << live.recording << "\n";
   return {std::move(live.run), std::move(live.map)};
-}
-
-void saveMapOf(const Map& map, const Camera& camera, const std::string& path) {
-  if (map.points.empty()) {
-    std::cerr << "edgeslam: " << path << " is not written: no map came to stand\n";
-  } else {
-    saveMap(path, camera, map);
-  }
 }
 
 // Told before a long run rather than after it.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "image_formats/jpeg_decoder.h"
 #include "inertia/inertial_unit.h"
 #include "map/keyframe.h"
 #include "wheels/odometry_pose.h"
@@ -26,7 +27,8 @@ class DecisionSink {
   // Before message `message` was handled, mapping applied correction `number`.
   virtual void appliedCorrection(std::int64_t message, std::int64_t number) noexcept = 0;
   virtual void passedOver(std::int64_t index, std::int64_t time_ns) noexcept = 0;
-  virtual void processed(const std::shared_ptr<const FrameImages>& images) noexcept = 0;
+  // `jpeg`: as the camera sent the frame, where that is kept; otherwise null.
+  virtual void processed(const std::shared_ptr<const FrameImages>& images, const CameraJpeg& jpeg) noexcept = 0;
   virtual void unreadable(std::int64_t index, std::int64_t time_ns, const std::string& problem) noexcept = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
+#include "image_formats/jpeg_decoder.h"
 #include "pipeline/triple_buffer.h"
 
 namespace edgeslam {
@@ -17,6 +18,7 @@ struct FrameSlot {
   cv::Mat grey;                     // CV_8U of the camera's size
   std::int64_t handed_over_ns = 0;  // steady clock, when capture was done with it
   std::string problem;              // why it could not be read; empty otherwise
+  CameraJpeg jpeg;                  // the frame as the camera sent it, where that is kept; null otherwise
 };
 
 struct PassedOverFrame {

@@ -44,7 +44,7 @@ void LiveTracking::track(FrameSlot& slot) {
                                   : worker_.skip(slot.index, slot.time_ns, slot.problem);
   publish(slot, result);
   sendMessages();
-  if (sink_ && slot.problem.empty()) sink_->processed(worker_.images());
+  if (sink_ && slot.problem.empty()) sink_->processed(worker_.images(), slot.jpeg);
   if (sink_ && !slot.problem.empty()) sink_->unreadable(slot.index, slot.time_ns, slot.problem);
   if (looks_ && slot.problem.empty()) looks_->show(result, worker_.tracker());
   processed_.fetch_add(1, std::memory_order_relaxed);

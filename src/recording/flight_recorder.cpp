@@ -12,7 +12,9 @@ RecordingLimits recordingLimits(const RecordingSpace& space) {
 
 FlightRecorder::FlightRecorder(const std::string& folder, const RecordingDescription& description,
                                const RecordingLimits& limits)
-    : folder_(folder), thread_(folder, description, limits) {
+    : folder_(folder),
+      largest_image_(largestArchivedImage(description.camera.width, description.camera.height)),
+      thread_(folder, description, limits) {
   inertia_.kind = DecisionKind::inertia;
   wheels_.kind = DecisionKind::wheels;
 }
@@ -54,9 +56,14 @@ void FlightRecorder::passedOver(std::int64_t index, std::int64_t time_ns) noexce
   post(std::move(entry));
 }
 
-void FlightRecorder::processed(const std::shared_ptr<const FrameImages>& images) noexcept {
+void FlightRecorder::processed(const std::shared_ptr<const FrameImages>& images, const CameraJpeg& jpeg) noexcept {
   RecordingEntry entry;
-  entry.images = images;
+  const bool as_it_came = jpeg && static_cast<std::int64_t>(jpeg->size()) <= largest_image_;
+  if (as_it_came) {
+    entry.jpeg = jpeg;
+  } else {
+    entry.images = images;
+  }
   entry.index = images->frame_index;
   entry.time_ns = images->time_ns;
   post(std::move(entry));

@@ -24,7 +24,7 @@ class FlightRecorder : public DecisionSink {
   void measured(std::int64_t frame_index, const OdometryPose& pose) noexcept override;
   void appliedCorrection(std::int64_t message, std::int64_t number) noexcept override;
   void passedOver(std::int64_t index, std::int64_t time_ns) noexcept override;
-  void processed(const std::shared_ptr<const FrameImages>& images) noexcept override;
+  void processed(const std::shared_ptr<const FrameImages>& images, const CameraJpeg& jpeg) noexcept override;
   void unreadable(std::int64_t index, std::int64_t time_ns, const std::string& problem) noexcept override;
 
   // Ends the recording, from any one thread, also while the run goes on: what it decides later is not recorded. Takes
@@ -44,7 +44,8 @@ class FlightRecorder : public DecisionSink {
   void postNumbered(DecisionKind kind, std::int64_t index, std::int64_t number) noexcept;
 
   const std::string folder_;
-  RecordingEntry inertia_, wheels_;  // what waits to go together
+  const std::int64_t largest_image_;  // [bytes]
+  RecordingEntry inertia_, wheels_;   // what waits to go together
   std::atomic<bool> ended_{false}, posting_{false};
   RecordingThread thread_;
 };

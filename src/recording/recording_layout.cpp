@@ -92,6 +92,11 @@ std::string_view takeWord(std::string_view& text) {
 
 }  // namespace
 
+std::int64_t largestArchivedImage(int width, int height) {
+  constexpr std::int64_t most_around = 1 << 16, most_a_pixel = 2;
+  return most_around + most_a_pixel * width * height;
+}
+
 Decision frameDecision(std::int64_t index, std::int64_t time_ns, const ArchivedImage& image) {
   return {DecisionKind::frame, index, time_ns, 0,
           std::to_string(image.offset) + " " + std::to_string(image.size) + " " + formatted("%08x", image.checksum)};

@@ -1,6 +1,7 @@
 // What a recording of the flight recorder looks like on disk, for its writer and its reader. Unpacked it is a TUM RGB-D
 // folder with some files more:
-//   rgb.tar                       the frames' images, 8 bits of grey, lossless: rgb/SECONDS.NANOSECONDS.pgm or .png
+//   rgb.tar                       the frames' images, rgb/SECONDS.NANOSECONDS.pgm or .png, 8 bits of grey, lossless, or
+//                                 .jpg, as the camera sent it
 //   rgb.txt                       "time-stamp file" a line [s], only images that the disk has confirmed
 //   camera.yaml                   the calibration, as readCalibration reads it
 //   edgeslam.yaml                 the configuration of the run
@@ -22,7 +23,7 @@
 
 namespace edgeslam {
 
-constexpr int recording_format_version = 3;  // 1 and 2 are read, too
+constexpr int recording_format_version = 4;  // 1 to 3 are read, too
 constexpr int first_archive_format = 3;      // before, frames are files in rgb/, as PNG
 constexpr const char* recording_description_name = "recording.txt";
 constexpr const char* recording_decisions_name = "decisions.txt";
@@ -55,6 +56,9 @@ struct Decision {
   std::int64_t number = 0;   // update and correction: NUMBER; gap: COUNT
   std::string text;          // unreadable and stopped: why; frame, inertia and wheels: what else stands in the line
 };
+
+// The most that an image file of so many pixels may have [bytes]. A camera's JPEG is smaller by far, or it pads.
+std::int64_t largestArchivedImage(int width, int height);
 
 // Of kind `frame`.
 Decision frameDecision(std::int64_t index, std::int64_t time_ns, const ArchivedImage& image);

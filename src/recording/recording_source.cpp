@@ -13,6 +13,7 @@
 #include "files/text_file.h"
 #include "frames/calibration_file.h"
 #include "frames/image_file.h"
+#include "image_formats/image_header.h"
 #include "recording/recording_layout.h"
 
 namespace edgeslam {
@@ -78,12 +79,6 @@ struct DecisionLines {
   std::string note;    // why there is no such line
 };
 
-// What an image file of the camera's size can take.
-std::int64_t mostImageBytes(const Camera& camera) {
-  constexpr std::int64_t most_around = 1 << 16, most_a_pixel = 2;
-  return most_around + most_a_pixel * camera.width * camera.height;
-}
-
 // Throws InputError where what stands behind the numbers is nothing that the recorder could have written.
 void checkText(const Decision& decision, int format, const Camera& camera, const std::string& place) {
   const auto unlessThere = [&](bool there, const std::string& expected) {
@@ -94,7 +89,7 @@ void checkText(const Decision& decision, int format, const Camera& camera, const
                 "nothing after the frame's time stamp in a recording of format " + std::to_string(format));
   } else if (decision.kind == DecisionKind::frame) {
     const std::optional<ArchivedImage> image = archivedImageOf(decision);
-    const std::int64_t most = mostImageBytes(camera);
+    const std::int64_t most = largestArchivedImage(camera.width, camera.height);
     unlessThere(image && image->size <= most, "OFFSET SIZE CHECKSUM of an image of " + std::to_string(camera.width) +
                                                   " x " + std::to_string(camera.height) + " pixels in " +
                                                   std::to_string(most) + " bytes at most");
@@ -175,10 +170,26 @@ void endBeforeMissingFrames(DecisionLines& lines, const Recording& recording) {
   lines.decisions.resize(end);
 }
 
-DecodedImage readArchivedFrame(const std::string& path, const ArchivedImage& where, const ExpectedSize& expected) {
+// By its header, which a decoder would make room for; as in any frame that a camera sent whole.
+bool isJpegOfSize(const std::string& bytes, cv::Size size) {
+  if (imageFormat(bytes) != ImageFormat::jpeg || !canHoldItsSize(bytes)) return false;
+  const std::optional<ClaimedSize> claimed = claimedSize(bytes);
+  return claimed && claimed->width == size.width && claimed->height == size.height;
+}
+
+// As the live run saw it: what a camera sent is decoded by what decoded it then.
+DecodedImage decodeFrame(const std::string& bytes, const ExpectedSize& expected, JpegDecoder& jpeg) {
+  if (!isJpegOfSize(bytes, expected.size)) return decodeGreyImage(bytes, expected);
+  cv::Mat grey(expected.size, CV_8U);
+  const std::string problem = jpeg.decode(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), grey);
+  return {problem.empty() ? grey : cv::Mat(), problem};
+}
+
+DecodedImage readArchivedFrame(const std::string& path, const ArchivedImage& where, const ExpectedSize& expected,
+                               JpegDecoder& jpeg) {
   const ArchivedBytes file = readArchivedImage(path, where);
   if (!file.problem.empty()) return {{}, file.problem};
-  DecodedImage image = decodeGreyImage(file.bytes, expected);
+  DecodedImage image = decodeFrame(file.bytes, expected, jpeg);
   if (!image.problem.empty()) image.problem.insert(0, placeInArchive(path, where));
   return image;
 }
@@ -275,7 +286,7 @@ std::optional<Frame> RecordingSource::next() {
   if (!frame.problem.empty()) return frame;
   const ExpectedSize expected{{recording_.camera.width, recording_.camera.height},
                               recording_.folder + "/" + tum_camera_name + " says"};
-  DecodedImage image = recorded.image ? readArchivedFrame(archivePath(recording_), *recorded.image, expected)
+  DecodedImage image = recorded.image ? readArchivedFrame(archivePath(recording_), *recorded.image, expected, jpeg_)
                                       : readGreyImage(framePath(recording_, recorded.time_ns), expected);
   frame.problem = image.problem;
   frame.grey = std::move(image.grey);

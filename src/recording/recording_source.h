@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frames/frame_source.h"
+#include "image_formats/jpeg_decoder.h"
 #include "pipeline/run_decisions.h"
 #include "recording/frame_archive.h"
 
@@ -101,6 +102,7 @@ class RecordingSource : public FrameSource {
  private:
   Recording recording_;
   std::size_t next_ = 0;
+  JpegDecoder jpeg_;
 };
 
 }  // namespace edgeslam

@@ -29,10 +29,10 @@ void lowerPriority() {
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice_level);
 }
 
-std::int64_t bytesOf(const std::shared_ptr<const FrameImages>& images) {
-  std::size_t bytes = 0;
-  if (images) {
-    for (const cv::Mat& level : images->pyramid.levels) bytes += level.total() * level.elemSize();
+std::int64_t imageBytes(const RecordingEntry& entry) {
+  std::size_t bytes = entry.jpeg ? entry.jpeg->size() : 0;
+  if (entry.images) {
+    for (const cv::Mat& level : entry.images->pyramid.levels) bytes += level.total() * level.elemSize();
   }
   return static_cast<std::int64_t>(bytes);
 }
@@ -59,7 +59,7 @@ RecordingThread::RecordingThread(const std::string& folder, const RecordingDescr
 RecordingThread::~RecordingThread() { stop(); }
 
 bool RecordingThread::post(RecordingEntry entry) noexcept {
-  const std::int64_t bytes = bytesOf(entry.images);
+  const std::int64_t bytes = imageBytes(entry);
   const std::int64_t before = image_bytes_.fetch_add(bytes, std::memory_order_relaxed);
   const bool has_room = bytes == 0 || before == 0 || before + bytes <= most_image_bytes_;
   if (has_room && queue_.push({std::move(entry), lost_before_next_, bytes})) {
@@ -111,6 +111,7 @@ void RecordingThread::writeUntilStopped() {
     if (queue_.pop(queued)) {
       write(queued);
       queued.entry.images.reset();
+      queued.entry.jpeg.reset();
       image_bytes_.fetch_sub(queued.image_bytes, std::memory_order_relaxed);
       publishStatus();
     } else if (stopping) {
@@ -129,7 +130,9 @@ void RecordingThread::writeUntilStopped() {
 void RecordingThread::write(const QueuedEntry& queued) {
   writeLost(queued.lost_before);
   const RecordingEntry& entry = queued.entry;
-  if (entry.kind == DecisionKind::frame) {
+  if (entry.jpeg) {
+    writer_.writeJpeg(entry.index, entry.time_ns, *entry.jpeg);
+  } else if (entry.kind == DecisionKind::frame) {
     const FrameCode code = queue_.read_available() > unhurried_backlog ? FrameCode::plain : FrameCode::packed;
     writer_.writeFrame(entry.index, entry.time_ns, entry.images->pyramid.levels[0], code);
   } else if (entry.kind == DecisionKind::inertia) {

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <thread>
 
+#include "image_formats/jpeg_decoder.h"
 #include "inertia/inertial_unit.h"
 #include "map/keyframe.h"
 #include "recording/recording_writer.h"
@@ -23,7 +24,8 @@ namespace edgeslam {
 // A frame or a decision on its way to the recorder. Copying it neither allocates nor copies pixels.
 struct RecordingEntry {
   DecisionKind kind = DecisionKind::frame;    // any but `gap`, `stopped` and `end`, which the thread writes itself
-  std::shared_ptr<const FrameImages> images;  // of a frame
+  std::shared_ptr<const FrameImages> images;  // of a frame; null where there is the JPEG
+  CameraJpeg jpeg;                            // of a frame, as the camera sent it; otherwise null
   std::int64_t index = 0;                     // as in Decision
   std::int64_t time_ns = 0;
   std::int64_t number = 0;
@@ -38,7 +40,7 @@ RecordingEntry unreadableFrameEntry(std::int64_t index, std::int64_t time_ns, st
 // Of images of 640 x 480 pixels these are 4 s at 60 frames/s and 8 s at 30. One image may always wait.
 struct QueueCapacity {
   std::size_t entries = 1024;
-  std::int64_t image_bytes = 100 << 20;  // with all levels of their pyramids
+  std::int64_t image_bytes = 100 << 20;  // as the camera sent them, or with all levels of their pyramids
 };
 
 class RecordingThread {

@@ -60,14 +60,23 @@ bool RecordingWriter::writeFrame(std::int64_t index, std::int64_t time_ns, const
     return refuse("frame " + std::to_string(index) + " is not of the camera's size in 8 bits of grey");
   }
   if (!encodeFrame(grey, code, image_)) return refuse("no memory to encode frame " + std::to_string(index));
-  const std::string_view content(reinterpret_cast<const char*>(image_.data()), image_.size());
+  return writeImage(index, time_ns, image_, fileEnding(code));
+}
+
+bool RecordingWriter::writeJpeg(std::int64_t index, std::int64_t time_ns, const std::vector<unsigned char>& jpeg) {
+  return status_.recording && writeImage(index, time_ns, jpeg, ".jpg");
+}
+
+bool RecordingWriter::writeImage(std::int64_t index, std::int64_t time_ns, const std::vector<unsigned char>& image,
+                                 const std::string& ending) {
+  const std::string_view content(reinterpret_cast<const char*>(image.data()), image.size());
   const Decision decision = frameDecision(
-      index, time_ns, {files_->nextOffset(), static_cast<std::int64_t>(image_.size()), imageChecksum(content)});
+      index, time_ns, {files_->nextOffset(), static_cast<std::int64_t>(image.size()), imageChecksum(content)});
   if (std::string problem = order_.add(decision); !problem.empty()) return refuse(problem);
-  const auto bytes = static_cast<std::int64_t>(archive_block + image_.size() + archivePadding(image_.size()));
+  const auto bytes = static_cast<std::int64_t>(archive_block + image.size() + archivePadding(image.size()));
   if (!keepsLimits(bytes)) return false;
-  const std::string name = formatStamp(time_ns) + fileEnding(code);
-  if (std::string problem = files_->addFrame(name, time_ns, image_); !problem.empty()) {
+  const std::string name = formatStamp(time_ns) + ending;
+  if (std::string problem = files_->addFrame(name, time_ns, image); !problem.empty()) {
     end(problem);
     return false;
   }

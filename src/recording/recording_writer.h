@@ -53,6 +53,8 @@ class RecordingWriter {
   // frame cannot be one of the recording (its size, its index or time stamp not above those before); otherwise
   // recording has ended, see status().
   bool writeFrame(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey, FrameCode code = FrameCode::packed);
+  // Likewise, as the camera sent the frame: its bytes are kept as they are.
+  bool writeJpeg(std::int64_t index, std::int64_t time_ns, const std::vector<unsigned char>& jpeg);
   // Of any kind but `frame`, `stopped` and `end`. False as for writeFrame. Write a frame's updates before the frame, so
   // that a recording which breaks off between the two still repeats the run.
   bool writeDecision(const Decision& decision);
@@ -65,6 +67,8 @@ class RecordingWriter {
   const RecordingStatus& status() const { return status_; }
 
  private:
+  bool writeImage(std::int64_t index, std::int64_t time_ns, const std::vector<unsigned char>& image,
+                  const std::string& ending);
   bool keepsLimits(std::int64_t bytes);
   bool refuse(const std::string& problem);
   void addLine(const Decision& decision);

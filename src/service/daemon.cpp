@@ -1,6 +1,7 @@
 #include "service/daemon.h"
 
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include "drivers/cameras/open_camera.h"
@@ -15,7 +16,10 @@ constexpr auto longest_wait = std::chrono::milliseconds(100);  // for a frame, b
 }  // namespace
 
 Daemon::Daemon(DaemonSetup setup, EventLog& log)
-    : setup_(std::move(setup)), log_(log), next_recording_(setup_.configuration, setup_.camera, link_, log) {
+    : setup_(std::move(setup)),
+      log_(log),
+      deadline_(log),
+      next_recording_(setup_.configuration, setup_.camera, link_, log) {
   for (const std::string& problem : startProblems(startNeeds(setup_))) log_.tell(problem);
   if (const std::string presumed = presumedLens(setup_.configuration); !presumed.empty()) log_.tell(presumed);
   openCamera();
@@ -94,10 +98,12 @@ void Daemon::oneRun() {
   if (map_) run.goOnWith(std::move(*map_));
   map_.reset();
   publisher_->begin(run, recorder, start_);
+  camera_->keepJpeg(recorder != nullptr);
   run.start();
   if (!std::exchange(processors_told_, true)) tellProcessorProblems(run);
   setUpThread({"capture", settings.threads.capture_priority, 0, false, {}});
   const RunEnd end = capture(run);
+  if (signals_.end() || reserve_.isUsed()) deadline_.begin();
   setUpThread({"edgeslam", 0, 0, false, {}});  // for the threads to come
   if (!end.command) publisher_->service().stopping();
   run.stop(end.settles);
@@ -123,7 +129,7 @@ void Daemon::tellReadout() {
 }
 
 Daemon::RunEnd Daemon::capture(LiveRun& run) {
-  while (!signals_.end()) {
+  while (!signals_.end() && !reserve_.isUsed()) {
     if (signals_.takeMapWish()) link_.askForMapToBeSaved();
     if (next_recording_.isUnderway()) {
       next_recording_.seeToPreparation();
@@ -167,12 +173,16 @@ void Daemon::beginNext(const Command& command, LiveRun& run) {
 }
 
 void Daemon::finish(const Map& map) {
-  if (setup_.for_viewing && !signals_.end()) page_->showUntilSignal(map);
+  if (setup_.for_viewing && !signals_.end() && !reserve_.isUsed()) {
+    page_->showUntilSignal(map);
+    deadline_.begin();
+  }
   if (!setup_.map_out.empty()) writeMap(map);
   const PublisherStatus totals = publisher_->status();
   log_.tell("ended after " + std::to_string(totals.frames_captured) + " frames, " +
             std::to_string(totals.frames_dropped) + " of them dropped, " + std::to_string(totals.frames_unreadable) +
             " unreadable");
+  if (reserve_.isUsed()) throw std::bad_alloc();
 }
 
 void Daemon::writeMap(const Map& map) {

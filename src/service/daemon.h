@@ -13,8 +13,10 @@
 #include "service/daemon_page.h"
 #include "service/daemon_setup.h"
 #include "service/daemon_signals.h"
+#include "service/end_deadline.h"
 #include "service/event_log.h"
 #include "service/frame_intake.h"
+#include "service/memory_reserve.h"
 #include "service/next_recording.h"
 #include "service/run_publisher.h"
 #include "service/sensor_intake.h"
@@ -29,7 +31,7 @@ class Daemon {
   Daemon(DaemonSetup setup, EventLog& log);
 
   // Until SIGTERM, SIGINT or the end of a recording as a camera. Throws InputError where the map cannot be written at
-  // the end.
+  // the end, and std::bad_alloc where memory ran out: the map is written then, if it can be.
   void run();
 
  private:
@@ -55,6 +57,8 @@ class Daemon {
   DaemonSignals signals_;  // first: threads inherit what is blocked
   DaemonSetup setup_;
   EventLog& log_;
+  MemoryReserve reserve_;
+  EndDeadline deadline_;  // before all that may wait for the disk
   CaptureLink link_;
   std::unique_ptr<ReopeningCamera> camera_;
   std::unique_ptr<DaemonPage> page_;

@@ -8,7 +8,7 @@ namespace edgeslam {
 void FrameIntake::take(const Capture& captured, LiveRun& run) {
   switch (captured.event) {
     case CaptureEvent::frame:
-      return takeFrame(captured.frame, run);
+      return takeFrame(captured, run);
     case CaptureEvent::damaged_frame:
       return takeDamaged(captured, run);
     case CaptureEvent::interrupted:
@@ -22,13 +22,16 @@ void FrameIntake::take(const Capture& captured, LiveRun& run) {
   }
 }
 
-void FrameIntake::takeFrame(const CapturedFrame& frame, LiveRun& run) {
+void FrameIntake::takeFrame(const Capture& captured, LiveRun& run) {
+  const CapturedFrame& frame = captured.frame;
   if (frame.after_interruption) {
     log_.tell(camera_.stream().camera + ": gives frames, " + camera_.stream().format);
     link_.setCameraProblem("");
     damage_told_ = false;
   }
-  nextSlot(frame, run).problem.clear();
+  FrameSlot& slot = nextSlot(frame, run);
+  slot.problem.clear();
+  slot.jpeg = captured.jpeg;
   run.handOver();
   link_.lost(frame.lost_before + frame.passed_over_before);
 }

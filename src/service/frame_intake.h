@@ -21,7 +21,7 @@ class FrameIntake {
   void take(const Capture& captured, LiveRun& run);
 
  private:
-  void takeFrame(const CapturedFrame& frame, LiveRun& run);
+  void takeFrame(const Capture& captured, LiveRun& run);
   void takeDamaged(const Capture& captured, LiveRun& run);
   FrameSlot& nextSlot(const CapturedFrame& frame, LiveRun& run);
 

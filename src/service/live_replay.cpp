@@ -42,14 +42,16 @@ void keepMap(const Map& map, const Camera& camera, const std::string& folder) {
   }
 }
 
-// Each frame at its time, and before it what was measured until then.
+// Each frame at its time, and before it what was measured until then; up to the last one, or the end asked for.
 void feed(FrameSource& source, const Camera& camera, const LiveReplay& replay, std::int64_t imu_offset_ns,
           LiveRun& run) {
   SampleFeed inertia(replay.inertia, imu_offset_ns);
   SampleFeed wheels(replay.wheels);
   std::optional<Clock::time_point> start;
   std::int64_t first_ns = 0;
-  while (std::optional<Frame> frame = source.next()) {
+  while (!replay.is_to_end || !replay.is_to_end()) {
+    std::optional<Frame> frame = source.next();
+    if (!frame) return;
     if (!start) {
       start = Clock::now();
       first_ns = frame->time_ns;
@@ -107,7 +109,7 @@ LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Set
   const std::optional<InertialUnit>& unit = settings.tracking.inertia;
   feed(source, camera, replay, unit ? unit->offset_ns : 0, run);
   setUpThread({"edgeslam", 0, 0, false, {}});
-  run.stop(/*settle=*/true);
+  run.stop(/*settle=*/!replay.is_to_end || !replay.is_to_end());
   if (replay.publisher) replay.publisher->end(/*is_last=*/true);
 
   LiveReplayResult result;

@@ -28,6 +28,7 @@ struct LiveReplay {
   std::string record_folder;          // empty: not recorded
   RecordingDescription description;   // of the recording
   RunPublisher* publisher = nullptr;  // null: nothing is published
+  std::function<bool()> is_to_end;    // asked before each frame; empty: after the last one only
   // Called for each frame, in order, by another thread.
   std::function<void(const FrameResult&, const std::string& problem)> progress;
 };

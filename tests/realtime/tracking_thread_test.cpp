@@ -69,7 +69,9 @@ class NoRecorder : public DecisionSink {
   void measured(std::int64_t, const OdometryPose&) noexcept override {}
   void appliedCorrection(std::int64_t, std::int64_t) noexcept override {}
   void passedOver(std::int64_t, std::int64_t) noexcept override {}
-  void processed(const std::shared_ptr<const FrameImages>& images) noexcept override { last_ = images; }
+  void processed(const std::shared_ptr<const FrameImages>& images, const CameraJpeg& /*jpeg*/) noexcept override {
+    last_ = images;
+  }
   void unreadable(std::int64_t, std::int64_t, const std::string&) noexcept override {}
 
  private:

@@ -2,11 +2,16 @@
 // says what is wrong, poses are never told twice or backwards, and the same map is continued.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "frames/frame_source.h"
 #include "recording/open_frame_source.h"
+#include "recording/recording_source.h"
 #include "system/daemon/daemon_fixture.h"
 #include "system/faults/faulty_camera.h"
 #include "system/faults/file_faults.h"
+#include "system/program.h"
+#include "unit/image_formats/made_jpeg.h"
 
 namespace edgeslam {
 namespace {
@@ -16,19 +21,23 @@ class CameraTrouble : public DaemonTest {
   void SetUp() override {
     DaemonTest::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;
+    useFrames([](const cv::Mat& grey) { return std::string(reinterpret_cast<const char*>(grey.data), grey.total()); });
+  }
+  // The first 150, as what `encode` makes of each.
+  void useFrames(const std::function<std::string(const cv::Mat&)>& encode) {
     const auto source = openFrameSource(parlour_);
     std::string images;
     for (int i = 0; i < 150; ++i) {
       const std::optional<Frame> frame = source->next();
       ASSERT_TRUE(frame && frame->grey.size() == cv::Size(faulty_camera_width, faulty_camera_height));
-      images.append(reinterpret_cast<const char*>(frame->grey.data), frame->grey.total());
+      images += encode(frame->grey);
     }
     environment_ = {"env", faulty_camera_frames + ("=" + folder_.write("frames", images)),
                     faulty_camera_trouble + ("=" + trouble_)};
   }
-  void startDaemon() {
+  void startDaemon(const std::string& more = "") {
     const std::string configuration = configure("camera: {calibration: " + parlour_ + "/camera.yaml}\n" +
-                                                "capture: {device: " + faulty_camera_device + "}\n");
+                                                "capture: {device: " + faulty_camera_device + "}\n" + more);
     Options command = environment_;
     for (const char* word : {"LD_PRELOAD=" EDGESLAM_FAULTY_CAMERA, EDGESLAM_PROGRAM, "run", "--config"}) {
       command.emplace_back(word);
@@ -137,6 +146,40 @@ TEST_F(CameraTrouble, TheSameImageAgainAndAgainIsACameraThatStandsStill) {
   }
   EXPECT_LE(after.statuses.back().keyframes, keyframes + 2);
   endAndTrack();
+}
+
+// No trouble: it is recorded to the last byte, and packed no more.
+TEST_F(CameraTrouble, AMotionJpegCameraIsRecordedAsItCameAndTheRunIsRepeated) {
+  std::set<std::string> sent;
+  ASSERT_NO_FATAL_FAILURE(useFrames([&](const cv::Mat& grey) {
+    const std::vector<unsigned char> jpeg = madeJpeg(grey);
+    return *sent.emplace(jpeg.begin(), jpeg.end()).first;
+  }));
+  const std::string recordings = folder_.path("recordings");
+  ASSERT_NO_FATAL_FAILURE(startDaemon("recording: {folder: " + recordings + ", from_start: true}\n"));
+  ASSERT_TRUE(goesOn(40));
+  daemon_->send(SIGTERM);
+  ASSERT_EQ(daemon_->exitCode(), 0) << daemon_->said();
+  daemon_.reset();
+
+  const std::string path = std::filesystem::directory_iterator(recordings)->path().string();
+  const Recording recording = readRecording(path);
+  EXPECT_TRUE(recording.decisions.complete) << recording.decisions.note;
+  ASSERT_GT(recording.frames.size(), 40U);
+  for (const RecordedFrame& frame : recording.frames) {
+    EXPECT_EQ(sent.count(readArchivedImage(path + "/rgb.tar", *frame.image).bytes), 1U) << frame.index;
+  }
+  const Outcome repeated = runProgram({"replay", path, "--output", folder_.path("repeated"), "--drawings", "0"});
+  ASSERT_EQ(repeated.exit_code, 0) << repeated.messages;
+  std::map<std::int64_t, Pose> published;
+  for (const StampedPose& pose : trajectoryOf(robot_->heard().states)) published[pose.time_ns] = pose.world_T_camera;
+  const Trajectory again = readTrajectory(folder_.path("repeated/trajectory_live.txt"));
+  ASSERT_GT(again.size(), 25U);
+  for (const StampedPose& pose : again) {
+    const auto first = published.find(pose.time_ns / 1000 * 1000);
+    ASSERT_NE(first, published.end()) << pose.time_ns;
+    EXPECT_LT((first->second.translation - pose.world_T_camera.translation).norm(), 1e-6) << pose.time_ns;
+  }
 }
 
 // `edgeslam record` asks the disk for all it has once a second (syncfs): in the thread that writes, so that frames

@@ -137,6 +137,32 @@ TEST_F(DiskOfADaemon, WhereStuckCostsNoPoses) {
   EXPECT_EQ(std::distance(begin(folders), end(folders)), 2) << "those that came too late are not there";
 }
 
+TEST_F(DiskOfADaemon, WhereStuckHoldsUpTheEndForSomeSecondsAndNotForEver) {
+  const auto daemon = startRecording(Fault::stuck);
+  ASSERT_TRUE(isTracking()) << daemon->said();
+  const std::string recording = std::filesystem::directory_iterator(recordings_)->path().string();
+  ASSERT_TRUE(hasRecorded(recording, 10)) << daemon->said();
+  folder_.write("broken", "");
+  daemon->send(SIGTERM);
+  EXPECT_EQ(daemon->exitCode(), 1) << daemon->said();
+  EXPECT_EQ(daemon->times("the disk does not answer: ended all the same, and what it had not taken"), 1)
+      << daemon->said();
+  EXPECT_GE(readRecording(recording).frames.size(), 10U) << "what was confirmed is there";
+  EXPECT_FALSE(std::filesystem::exists(map_));
+}
+
+// The thread that takes the signals opens the first recording.
+TEST_F(DiskOfADaemon, WhereStuckAtTheStartLikewise) {
+  FaultPlan plan;
+  plan.under = disk_;
+  plan.fault = Fault::stuck;
+  const auto daemon = startFaulty(plan, {"--record", recordings_});
+  ASSERT_TRUE(daemon->says("camera: ")) << daemon->said();
+  daemon->send(SIGTERM);
+  EXPECT_EQ(daemon->exitCode(), 1) << daemon->said();
+  EXPECT_TRUE(daemon->says("the disk does not answer: ended all the same")) << daemon->said();
+}
+
 TEST_F(DiskOfADaemon, WhereItsFoldersVanishIsToldAndPosesGoOn) {
   const auto daemon = startFaulty(FaultPlan(), {"--record", recordings_ + "/now", "--map-out", map_});
   ASSERT_TRUE(isTracking()) << daemon->said();

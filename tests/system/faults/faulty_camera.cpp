@@ -14,6 +14,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "unit/v4l2/fake_driver.h"
 
@@ -23,7 +24,8 @@ using edgeslam::FakeDriver;
 
 constexpr std::int64_t second_ns = 1'000'000'000, frame_ns = second_ns / 30;
 constexpr std::size_t image_bytes = std::size_t{edgeslam::faulty_camera_width} * edgeslam::faulty_camera_height;
-constexpr std::uint32_t grey = v4l2_fourcc('G', 'R', 'E', 'Y');
+constexpr std::uint32_t grey = v4l2_fourcc('G', 'R', 'E', 'Y'), mjpeg = v4l2_fourcc('M', 'J', 'P', 'G');
+constexpr const char* jpeg_start = "\xff\xd8";
 
 std::int64_t steady_ns() {
   timespec now{};
@@ -37,9 +39,24 @@ std::string contentOf(const char* variable) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+// In a JPEG's data a byte 0xff is never followed by such a marker.
+std::vector<std::string> imagesOf(const std::string& content) {
+  std::vector<std::string> images;
+  const bool are_jpeg = content.rfind(jpeg_start, 0) == 0;
+  for (std::size_t at = 0; at < content.size(); at += images.back().size()) {
+    const std::size_t end = content.find(std::string("\xff\xd9") + jpeg_start, at);
+    images.push_back(content.substr(at, !are_jpeg ? image_bytes : end == std::string::npos ? end : end + 2 - at));
+  }
+  return images;
+}
+
 class PlayingCamera : public FakeDriver {
  public:
-  PlayingCamera() { formats = {{grey, {{edgeslam::faulty_camera_width, edgeslam::faulty_camera_height, {30}}}}}; }
+  PlayingCamera() {
+    const bool sends_jpeg = !images_.empty() && images_.front().rfind(jpeg_start, 0) == 0;
+    buffer_bytes_ = image_bytes * (sends_jpeg ? 2 : 1);
+    formats = {{sends_jpeg ? mjpeg : grey, {{edgeslam::faulty_camera_width, edgeslam::faulty_camera_height, {30}}}}};
+  }
 
   // What should have happened by now.
   void play() {
@@ -93,15 +110,19 @@ class PlayingCamera : public FakeDriver {
 
   void fillWith(std::int64_t frame) {
     const std::int64_t shown = trouble_ == "repeated" ? trouble_since_ : frame;
-    const auto count = static_cast<std::int64_t>(images_.size() / image_bytes);
+    const auto count = static_cast<std::int64_t>(images_.size());
     const std::int64_t place = shown % (2 * count - 2);
-    const std::int64_t image = place < count ? place : 2 * count - 2 - place;
+    const auto image = static_cast<std::size_t>(place < count ? place : 2 * count - 2 - place);
     const std::int64_t stamp_ns = start_ns_ + frame * frame_ns - (trouble_ == "past" ? 3 * second_ns : 0);
-    fill(reinterpret_cast<const std::uint8_t*>(images_.data()) + static_cast<std::size_t>(image) * image_bytes,
-         static_cast<std::uint32_t>(frame), stamp_ns, 0, trouble_ == "short" ? static_cast<int>(image_bytes) / 2 : 0);
+    std::string buffer = images_[image];
+    const std::size_t filled = buffer.size() / (trouble_ == "short" ? 2 : 1);
+    buffer.resize(buffer_bytes_);
+    fill(reinterpret_cast<const std::uint8_t*>(buffer.data()), static_cast<std::uint32_t>(frame), stamp_ns, 0,
+         static_cast<int>(buffer_bytes_ - filled));
   }
 
-  const std::string images_ = contentOf(edgeslam::faulty_camera_frames);
+  const std::vector<std::string> images_ = imagesOf(contentOf(edgeslam::faulty_camera_frames));
+  std::size_t buffer_bytes_ = 0;
   std::int64_t start_ns_ = 0, next_ = 0, trouble_since_ = 0;
   std::string trouble_;
 };

@@ -8,7 +8,8 @@ constexpr const char* faulty_camera_device = "/dev/video-of-a-test";
 constexpr int faulty_camera_width = 320, faulty_camera_height = 240;
 
 // By the environment of the program:
-constexpr const char* faulty_camera_frames = "EDGESLAM_CAMERA_FRAMES";  // file: grey images, one after the other
+// File: grey images, one after the other; or JPEG images, of which any is shorter than two grey ones.
+constexpr const char* faulty_camera_frames = "EDGESLAM_CAMERA_FRAMES";
 // File that, while it is there, names in one word the trouble there is:
 //   gone      it is not plugged in
 //   frozen    no frame comes

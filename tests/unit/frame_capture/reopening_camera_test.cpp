@@ -19,6 +19,7 @@ struct World {
   bool stamps_stand_still = false;
   bool damaged = false;
   bool is_recording = false;
+  bool keeps_jpeg = false;  // the camera that is open
   int width = 4;
   int opened = 0;
   int attempts = 0;
@@ -27,6 +28,7 @@ struct World {
 class ScriptedCamera : public LiveCamera {
  public:
   explicit ScriptedCamera(World& world) : world_(world) {
+    world.keeps_jpeg = false;
     stream_ = {"scripted", "GREY", world.width, 3, interval, world.is_recording};
   }
   Capture next(cv::Mat& grey, std::chrono::nanoseconds timeout) override {
@@ -44,6 +46,7 @@ class ScriptedCamera : public LiveCamera {
     return capture;
   }
   const StreamDescription& stream() const override { return stream_; }
+  void keepJpeg(bool keep) override { world_.keeps_jpeg = keep; }
 
  private:
   World& world_;
@@ -104,6 +107,18 @@ TEST_F(ReopeningCameraTest, AnUnpluggedCameraIsToldOnceForEachReasonAndComesBack
   EXPECT_TRUE(back.frame.after_interruption);
   EXPECT_GT(back.frame.sequence, last_sequence);
   EXPECT_FALSE(next().frame.after_interruption);
+}
+
+TEST_F(ReopeningCameraTest, WhatIsKeptOfFramesIsKeptAfterAnInterruptionToo) {
+  camera_.keepJpeg(true);
+  EXPECT_TRUE(world_.keeps_jpeg);
+  world_.plugged = false;
+  EXPECT_EQ(next().event, CaptureEvent::interrupted);
+  world_.plugged = true;
+  until(CaptureEvent::frame, 6000 * ms);
+  EXPECT_TRUE(world_.keeps_jpeg);
+  camera_.keepJpeg(false);
+  EXPECT_FALSE(world_.keeps_jpeg);
 }
 
 TEST_F(ReopeningCameraTest, AFrozenStreamIsNoticedWithinHalfASecondAndOpenedAgain) {

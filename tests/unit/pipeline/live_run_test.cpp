@@ -58,7 +58,7 @@ class KeptDecisions : public DecisionSink {
     decisions.snapshots.insert(number);
   }
   void passedOver(std::int64_t index, std::int64_t /*time_ns*/) noexcept override { passed_over.push_back(index); }
-  void processed(const std::shared_ptr<const FrameImages>& processed) noexcept override {
+  void processed(const std::shared_ptr<const FrameImages>& processed, const CameraJpeg& /*jpeg*/) noexcept override {
     frames.push_back(processed->frame_index);
     images.push_back(processed->pyramid.levels[0].clone());
   }

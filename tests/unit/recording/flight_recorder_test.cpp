@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "recording/recording_source.h"
+#include "unit/image_formats/made_jpeg.h"
 #include "unit/recording/made_recording.h"
 
 namespace edgeslam {
@@ -27,7 +28,7 @@ TEST(FlightRecorder, EndedWhileTheRunGoesOnItHasACleanEndAndNoGap) {
     std::thread tracking([&] {
       for (int i = 0; !stopped; ++i) {
         recorder.tookUpdate(i, i);
-        recorder.processed(imagesOf(i));
+        recorder.processed(imagesOf(i), nullptr);
         ++frames;
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
       }
@@ -47,6 +48,26 @@ TEST(FlightRecorder, EndedWhileTheRunGoesOnItHasACleanEndAndNoGap) {
   }
 }
 
+// As the camera sent it, unless that is more than a recording takes: then the image is.
+TEST(FlightRecorder, AJpegOfTheCameraTakesTheImagesPlace) {
+  const TemporaryFolder folder;
+  FlightRecorder recorder(folder.path("recording"), madeDescription());
+  const auto jpeg = std::make_shared<const std::vector<unsigned char>>(madeJpeg(madeFrame(0)));
+  auto padded = std::make_shared<std::vector<unsigned char>>(*jpeg);
+  padded->resize(static_cast<std::size_t>(largestArchivedImage(made_width, made_height)) + 1);
+  const std::shared_ptr<const FrameImages> images = imagesOf(0);
+  recorder.processed(images, jpeg);
+  recorder.processed(imagesOf(1), padded);
+  recorder.stop();
+  EXPECT_EQ(images.use_count(), 1);
+  const Recording recording = readRecording(folder.path("recording"));
+  ASSERT_EQ(recording.frames.size(), 2U);
+  EXPECT_EQ(recording.frames[0].image->size, static_cast<std::int64_t>(jpeg->size()));
+  expectFramesAsMade(recording, [&](int i) {
+    return i == 1 ? madeFrame(1) : decodedAsLive(*jpeg, {made_width, made_height});
+  });
+}
+
 TEST(FlightRecorder, WhatAnInertialUnitMeasuredComesBeforeItsFrameInOrder) {
   const TemporaryFolder folder;
   FlightRecorder recorder(folder.path("recording"), madeDescription());
@@ -56,7 +77,7 @@ TEST(FlightRecorder, WhatAnInertialUnitMeasuredComesBeforeItsFrameInOrder) {
       given.push_back({i, {madeTime(i) + 1000 * k, {0.001 * k, 0, 0.1 * i}, {0, 0, 9.8}}});
       recorder.measured(i, given.back().sample);
     }
-    recorder.processed(imagesOf(i));
+    recorder.processed(imagesOf(i), nullptr);
   }
   EXPECT_EQ(recorder.stop().not_recorded, 0);
   const Recording recording = readRecording(folder.path("recording"));
@@ -81,7 +102,7 @@ TEST(FlightRecorder, WhatTheWheelsSaidComesBackToTheLastBit) {
       recorder.measured(i, given.back().pose);
       recorder.measured(i, InertialSample{madeTime(i) + k, {0, 0, 0.1}, {0, 0, 9.8}});
     }
-    recorder.processed(imagesOf(i));
+    recorder.processed(imagesOf(i), nullptr);
   }
   EXPECT_EQ(recorder.stop().not_recorded, 0);
   const Recording recording = readRecording(folder.path("recording"));

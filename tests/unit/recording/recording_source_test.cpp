@@ -7,6 +7,7 @@
 #include "frames/folder_source.h"
 #include "frames/mask_file.h"
 #include "recording/open_frame_source.h"
+#include "unit/image_formats/made_jpeg.h"
 #include "unit/recording/made_recording.h"
 
 namespace edgeslam {
@@ -342,8 +343,8 @@ TEST_F(RecordingSourceTest, AFrameOfAnotherSizeIsAProblem) {
 }
 
 TEST_F(RecordingSourceTest, MissingAndForeignFilesAreTold) {
-  folder_.write("recording/recording.txt", "format 4\nprogram 9\n");
-  expectInputError([&] { readRecording(path_); }, "recording.txt:1", "version 4", "version 1 to 3");
+  folder_.write("recording/recording.txt", "format 5\nprogram 9\n");
+  expectInputError([&] { readRecording(path_); }, "recording.txt:1", "version 5", "version 1 to 4");
   folder_.write("recording/recording.txt", "format 3\nprogram 0.1\n");
   EXPECT_EQ(readRecording(path_).program_version, "0.1");
   folder_.write("recording/recording.txt", "");
@@ -358,6 +359,43 @@ TEST_F(RecordingSourceTest, MissingAndForeignFilesAreTold) {
     expectInputError([&] { openFrameSource(path_); }, path_ + "/" + name);
     folder_.write("recording/" + name, content);
   }
+}
+
+// As a camera sends it, though tools may take it for damaged: the pixels are those that the live run had.
+TEST_F(RecordingSourceTest, AJpegOfTheCameraIsReadAsTheCameraWas) {
+  const TemporaryFolder folder;
+  RecordingWriter writer;
+  writer.open(folder.path("sent"), madeDescription(), noLimits());
+  const auto sent = [](int i) { return madeJpeg(flatFrame(40 * i)); };
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(writer.writeJpeg(i, madeTime(i), sent(i)));
+  EXPECT_TRUE(writer.writeFrame(3, madeTime(3), madeFrame(3)));
+  writer.close();
+  const cv::Size size(made_width, made_height);
+  expectFramesAsMade(readRecording(folder.path("sent")),
+                     [&](int i) { return i == 3 ? madeFrame(3) : decodedAsLive(sent(i), size); });
+  const auto files = unpacked(fileContent(folder.path("sent/rgb.tar")));
+  ASSERT_EQ(files.size(), 4U);
+  for (int i = 0; i < 3; ++i) {
+    const std::vector<unsigned char> bytes = sent(i);
+    EXPECT_EQ(files.at("rgb/" + formatStamp(madeTime(i)) + ".jpg"), std::string(bytes.begin(), bytes.end()));
+  }
+}
+
+// Undamaged by its checksum, and yet no image: whoever wrote it.
+TEST_F(RecordingSourceTest, AJpegThatIsBrokenIsAProblemOfItsFrame) {
+  const TemporaryFolder folder;
+  RecordingWriter writer;
+  writer.open(folder.path("sent"), madeDescription(), noLimits());
+  std::vector<unsigned char> cut = madeJpeg(flatFrame(9));
+  cut.resize(cut.size() - 40);
+  writer.writeJpeg(0, madeTime(0), cut);
+  writer.writeJpeg(1, madeTime(1), madeJpeg(cv::Mat(made_height + 1, made_width, CV_8U, cv::Scalar(7))));
+  writer.writeJpeg(2, madeTime(2), madeJpeg(flatFrame(9)));
+  writer.close();
+  RecordingSource source(readRecording(folder.path("sent")));
+  EXPECT_NE(source.next()->problem.find("rgb.tar: at byte 512: a broken JPEG"), std::string::npos);
+  EXPECT_NE(source.next()->problem.find("is 32 x 25 pixels"), std::string::npos);
+  EXPECT_EQ(source.next()->problem, "");
 }
 
 TEST_F(RecordingSourceTest, ARecordingWithoutFramesIsToldAndItsDecisionsAreStillRead) {

@@ -164,6 +164,24 @@ TEST(RecordingThread, WhatWaitsIsBoundedByTheMemoryOfItsImages) {
   EXPECT_EQ(thread.stop().not_recorded, lost);
 }
 
+TEST(RecordingThread, SoIsWhatWaitsAsTheCameraSentIt) {
+  const TemporaryFolder folder;
+  RecordingThread thread(folder.path("recording"), madeDescription(), noLimits(), {10'000, 1000});
+  RecordingEntry entry;
+  entry.jpeg = std::make_shared<const std::vector<unsigned char>>(600, 1);
+  std::int64_t taken = 0;
+  for (int i = 0; i < 5000; ++i) {
+    entry.index = i;
+    entry.time_ns = madeTime(i);
+    taken += thread.post(entry) ? 1 : 0;
+  }
+  EXPECT_LT(taken, 5000);
+  const RecordingStatus status = thread.stop();
+  EXPECT_EQ(status.frames, taken);
+  EXPECT_EQ(status.not_recorded, 5000 - taken);
+  EXPECT_EQ(entry.jpeg.use_count(), 1) << "let go when it is written";
+}
+
 TEST(RecordingThread, OneImageMayWaitHoweverLarge) {
   const TemporaryFolder folder;
   RecordingThread thread(folder.path("recording"), madeDescription(), noLimits(), {10, 1});

@@ -4,6 +4,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "unit/image_formats/made_jpeg.h"
 #include "unit/v4l2/fake_driver.h"
 
 namespace edgeslam {
@@ -139,6 +140,39 @@ TEST_F(V4l2CameraTest, BrokenAndShortBuffersAreDamagedFramesAndTheStreamGoesOn) 
     ASSERT_TRUE(fill(1, 2 + i)) << "a buffer was not given back";
     EXPECT_EQ(next().event, CaptureEvent::frame);
   }
+}
+
+// With the rest of the driver's buffer left as it was.
+TEST_F(V4l2CameraTest, AJpegIsGivenAsItCameWhereThatIsAskedFor) {
+  driver_.formats = {{v4l2_fourcc('M', 'J', 'P', 'G'), {{64, 48, {30}}}}};
+  openWell();
+  cv::Mat shown(48, 64, CV_8U, cv::Scalar(90));
+  shown.colRange(20, 40).setTo(200);
+  const std::vector<unsigned char> sent = madeJpeg(shown);
+  std::vector<unsigned char> buffer = sent;
+  buffer.resize(64 * 48 * 2, 0xEE);
+  const auto fillWith = [&](std::uint32_t sequence, std::size_t size) {
+    driver_.time_ns += 33 * ms;
+    const auto missing = static_cast<int>(buffer.size() - size);
+    ASSERT_TRUE(driver_.fill(buffer.data(), sequence, driver_.time_ns, 0, missing));
+  };
+  fillWith(0, sent.size());
+  Capture capture = next();
+  ASSERT_EQ(capture.event, CaptureEvent::frame) << capture.message;
+  EXPECT_EQ(capture.jpeg, nullptr) << "nobody asked";
+
+  opened_.camera->keepJpeg(true);
+  fillWith(1, sent.size());
+  capture = next();
+  ASSERT_EQ(capture.event, CaptureEvent::frame) << capture.message;
+  ASSERT_TRUE(capture.jpeg);
+  EXPECT_EQ(*capture.jpeg, sent);
+  EXPECT_EQ(cv::norm(grey_, decodedAsLive(*capture.jpeg, grey_.size()), cv::NORM_INF), 0);
+
+  fillWith(2, sent.size() / 2);
+  capture = next();
+  EXPECT_EQ(capture.event, CaptureEvent::damaged_frame);
+  EXPECT_EQ(capture.jpeg, nullptr);
 }
 
 TEST_F(V4l2CameraTest, SignalsInterruptNothing) {

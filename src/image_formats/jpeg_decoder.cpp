@@ -1,8 +1,9 @@
+#include "image_formats/jpeg_decoder.h"
+
 #include <turbojpeg.h>
 
 #include <cstring>
-
-#include "drivers/frame_capture/grey_conversion.h"
+#include <utility>
 
 namespace edgeslam {
 namespace {
@@ -25,7 +26,10 @@ std::string JpegDecoder::decode(const std::uint8_t* data, std::size_t size, cv::
   if (size < 4 || data[0] != 0xFF || data[1] != 0xD8) return "no JPEG image: it does not begin with FF D8";
   int width = 0, height = 0, subsampling = 0, colours = 0;
   if (tjDecompressHeader3(decoder_, data, size, &width, &height, &subsampling, &colours) != 0) {
-    return std::string("a broken JPEG header: ") + tjGetErrorStr2(decoder_);
+    std::string problem = std::string("a broken JPEG header: ") + tjGetErrorStr2(decoder_);
+    // It would take the next frame for the rest of this header.
+    tjDestroy(std::exchange(decoder_, tjInitDecompress()));
+    return problem;
   }
   if (width != grey.cols || height != grey.rows) {
     return "a JPEG image of " + std::to_string(width) + " x " + std::to_string(height) + " pixels, expected " +

@@ -1,3 +1,5 @@
+#include "image_formats/jpeg_decoder.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "drivers/frame_capture/grey_conversion.h"
+#include "unit/image_formats/made_jpeg.h"
 
 namespace edgeslam {
 namespace {
@@ -33,23 +35,11 @@ Bytes jpegOf(const cv::Mat& image) {
   return bytes;
 }
 
-// Without its Huffman tables, as motion-JPEG cameras send it.
-Bytes withoutHuffmanTables(const Bytes& bytes) {
-  Bytes kept(bytes.begin(), bytes.begin() + 2);
-  std::size_t at = 2;
-  while (bytes[at + 1] != 0xDA) {
-    const std::size_t length = 2 + bytes[at + 2] * 256U + bytes[at + 3];
-    if (bytes[at + 1] != 0xC4) kept.insert(kept.end(), bytes.begin() + at, bytes.begin() + at + length);
-    at += length;
-  }
-  kept.insert(kept.end(), bytes.begin() + at, bytes.end());
-  return kept;
-}
-
 std::string decode(const Bytes& bytes, cv::Size size, cv::Mat& grey) {
   JpegDecoder decoder;
   const Bytes exact(bytes);  // no spare capacity behind it
-  return convertToGrey({PixelFormat::mjpeg, size.width, size.height, 0}, exact.data(), exact.size(), decoder, grey);
+  grey.create(size, CV_8U);
+  return decoder.decode(exact.data(), exact.size(), grey);
 }
 
 TEST(JpegDecoder, GivesTheBrightnessOfColouredAndOfGreyImages) {
@@ -94,6 +84,20 @@ TEST(JpegDecoder, EveryCutIsAnError) {
     cv::Mat grey;
     EXPECT_NE(decode(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)), {64, 48}, grey), "")
         << size;
+  }
+}
+
+// By the same decoder, as a camera's is.
+TEST(JpegDecoder, ACutFrameHarmsNoneAfterIt) {
+  const Bytes whole = jpegOf(colourfulImage({64, 48}));
+  JpegDecoder decoder;
+  cv::Mat expected(48, 64, CV_8U), grey(48, 64, CV_8U);
+  ASSERT_EQ(decoder.decode(whole.data(), whole.size(), expected), "");
+  for (std::size_t size = 0; size < whole.size(); size += size < 700 ? 1 : 13) {
+    EXPECT_NE(
+        decoder.decode(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)).data(), size, grey), "");
+    ASSERT_EQ(decoder.decode(whole.data(), whole.size(), grey), "") << "after one of " << size << " bytes";
+    ASSERT_EQ(cv::norm(grey, expected, cv::NORM_INF), 0) << size;
   }
 }
 
