@@ -4,8 +4,10 @@
 //
 // A pass goes over each sequence three times (at its end the camera jumps back to its start, and has to be found
 // again), each sequence in a run of its own as after a command RESET; every second pass goes on with the map that the
-// pass before saved. It ends after N passes, or after H hours of the frames' time, or on Ctrl-C. Exit code 1 where
-// something grew or was counted wrong; see soak_minutes.h for what that means.
+// pass before saved. It ends after N passes, or after H hours of the frames' time, or on Ctrl-C. Where a sequence has
+// its truth (groundtruth.txt), the poses that were called good are held against it, and FILE.truth.csv tells how far
+// they are off. Exit code 1 where something grew, was counted wrong, or is wrong; see soak_minutes.h and soak_truth.h
+// for what that means.
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -14,9 +16,11 @@
 #include <fstream>
 #include <opencv2/core/utility.hpp>
 
+#include "evaluation/trajectory.h"
 #include "map/saved_map.h"
 #include "recording/open_frame_source.h"
 #include "soak/soak_minutes.h"
+#include "soak/soak_truth.h"
 #include "soak/soaked_run.h"
 
 namespace edgeslam {
@@ -25,6 +29,7 @@ namespace {
 constexpr int repeats = 3;
 constexpr std::int64_t frames_a_minute = 1800;
 constexpr std::int64_t jump_ns = 500'000'000;
+constexpr std::int64_t same_time_ns = 10'000'000;  // of a frame and its truth
 
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -49,9 +54,11 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 class Soak {
  public:
-  explicit Soak(SoakArguments arguments) : arguments_(std::move(arguments)), csv_(arguments_.csv) {
-    if (!csv_) throw InputError(arguments_.csv + ": cannot be written");
+  explicit Soak(SoakArguments arguments)
+      : arguments_(std::move(arguments)), csv_(arguments_.csv), truth_csv_(arguments_.csv + ".truth.csv") {
+    if (!csv_ || !truth_csv_) throw InputError(arguments_.csv + ": cannot be written");
     csv_ << soakHeading();
+    truth_csv_ << truthHeading();
   }
 
   int run() {
@@ -74,11 +81,12 @@ class Soak {
     startMinute();
     for (int i = 0; i < repeats && !isOver(); ++i) {
       const std::unique_ptr<FrameSource> source = openFrameSource(sequence);
+      const Trajectory truth = truthOf(*source);
       std::int64_t last_ns = -1;
       while (const std::optional<Frame> frame = source->next()) {
         if (interrupted != 0) break;
         if (!frame->problem.empty()) continue;
-        run.feed(frame->grey, last_ns < 0 ? jump_ns : frame->time_ns - last_ns);
+        run.feed(frame->grey, last_ns < 0 ? jump_ns : frame->time_ns - last_ns, truthAt(truth, frame->time_ns));
         last_ns = frame->time_ns;
         if (totals_.frames - minute_start_ >= frames_a_minute) endMinute(run, sequence);
       }
@@ -86,6 +94,34 @@ class Soak {
     if (totals_.frames > minute_start_) endMinute(run, sequence);
     const Map map = run.end();
     if (!map.points.empty()) saveMap(map_file, camera, map);
+    compareWithTruth(run.judged(), sequence);
+  }
+
+  static Trajectory truthOf(const FrameSource& source) {
+    return source.groundTruthPath().empty() ? Trajectory() : readTrajectory(source.groundTruthPath());
+  }
+
+  static std::optional<Eigen::Vector3d> truthAt(const Trajectory& truth, std::int64_t time_ns) {
+    const auto from = std::lower_bound(truth.begin(), truth.end(), time_ns - same_time_ns,
+                                       [](const StampedPose& pose, std::int64_t time) { return pose.time_ns < time; });
+    std::optional<Eigen::Vector3d> nearest;
+    std::int64_t least_ns = same_time_ns;
+    for (auto pose = from; pose != truth.end() && pose->time_ns <= time_ns + same_time_ns; ++pose) {
+      const std::int64_t off_ns = std::abs(pose->time_ns - time_ns);
+      if (off_ns > least_ns) continue;
+      least_ns = off_ns;
+      nearest = pose->world_T_camera.translation;
+    }
+    return nearest;
+  }
+
+  void compareWithTruth(const std::vector<JudgedPose>& poses, const std::string& sequence) {
+    if (poses.empty() || interrupted != 0) return;
+    SoakTruth truth = judgeByTruth(poses);
+    truth.pass = pass_;
+    truth.sequence = nameOf(sequence);
+    truth_csv_ << truthLine(truth) << std::flush;
+    truths_.push_back(truth);
   }
 
   static std::string nameOf(const std::string& sequence) {
@@ -126,6 +162,7 @@ class Soak {
 
   int judge() const {
     std::vector<std::string> problems = soakProblems(minutes_);
+    for (const std::string& problem : truthProblems(truths_)) problems.push_back(problem);
     problems.insert(problems.end(), totals_.problems.begin(), totals_.problems.end());
     std::printf("%lld frames, %.2f h of them, %lld passes; %lld were told as unreadable\n",
                 static_cast<long long>(totals_.frames), 1e-9 * static_cast<double>(totals_.time_ns) / 3600,
@@ -135,9 +172,10 @@ class Soak {
   }
 
   SoakArguments arguments_;
-  std::ofstream csv_;
+  std::ofstream csv_, truth_csv_;
   SoakTotals totals_;
   std::vector<SoakMinute> minutes_;
+  std::vector<SoakTruth> truths_;
   std::int64_t pass_ = 0, minute_start_ = 0;
   double minute_processor_s_ = 0;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

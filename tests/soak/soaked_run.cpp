@@ -34,7 +34,7 @@ void SoakedRun::begin(Map map) {
   run_.start();
 }
 
-void SoakedRun::feed(const cv::Mat& grey, std::int64_t step_ns) {
+void SoakedRun::feed(const cv::Mat& grey, std::int64_t step_ns, const std::optional<Eigen::Vector3d>& truth) {
   FrameSlot& slot = run_.nextSlot();
   slot.index = handed_++;
   slot.time_ns = totals_.time_ns += step_ns;
@@ -45,7 +45,7 @@ void SoakedRun::feed(const cv::Mat& grey, std::int64_t step_ns) {
   grey.copyTo(slot.grey);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    expected_ns_[slot.index] = slot.time_ns;
+    expected_[slot.index] = {slot.time_ns, truth};
   }
   run_.handOver();
   const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
@@ -80,9 +80,12 @@ std::vector<double> SoakedRun::takeLatencies(std::int64_t& good_frames) {
 
 void SoakedRun::receive(const FrameResult& result, const std::string& problem) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const auto expected = expected_ns_.find(result.index);
-  if (expected == expected_ns_.end() || expected->second != result.time_ns) note("a time stamp is another one");
-  expected_ns_.erase(expected_ns_.begin(), expected_ns_.upper_bound(result.index));
+  const auto expected = expected_.find(result.index);
+  if (expected == expected_.end() || expected->second.time_ns != result.time_ns) note("a time stamp is another one");
+  if (expected != expected_.end() && expected->second.truth && isGoodPose(result.state)) {
+    judged_.push_back({result.world, result.world_T_camera, result.world_covariance, *expected->second.truth});
+  }
+  expected_.erase(expected_.begin(), expected_.upper_bound(result.index));
   if (result.index <= last_index_) note("a frame came twice or out of order");
   last_index_ = result.index;
   if (!isSound(result)) note("a pose that cannot be, frame " + std::to_string(result.index));

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "frames/frame_source.h"
 #include "pipeline/live_run.h"
+#include "soak/soak_truth.h"
 
 namespace edgeslam {
 
@@ -27,10 +29,13 @@ class SoakedRun {
   // `map`: to go on with; may be empty.
   void begin(Map map);
   // The next frame, `step_ns` after the last; waits until tracking has it and mapping follows. Each 499th is told as
-  // unreadable.
-  void feed(const cv::Mat& grey, std::int64_t step_ns);
+  // unreadable. `truth`: the camera's centre [m], where it is known.
+  void feed(const cv::Mat& grey, std::int64_t step_ns, const std::optional<Eigen::Vector3d>& truth);
   // Waits until all is done, and compares what came out with what went in. The map is left.
   Map end();
+
+  // Those that were called good, of frames whose truth is known; once the run has ended.
+  const std::vector<JudgedPose>& judged() const { return judged_; }
 
   LiveCounts counts() const { return run_.counts(); }
   // Of the frames since this was last asked [ms], in order of size.
@@ -42,7 +47,12 @@ class SoakedRun {
 
   SoakTotals& totals_;
   std::mutex mutex_;  // of what follows: the publishing thread writes, the feeding one reads
-  std::map<std::int64_t, std::int64_t> expected_ns_;  // by index, of frames that are under way
+  struct Expected {
+    std::int64_t time_ns = 0;
+    std::optional<Eigen::Vector3d> truth;
+  };
+  std::map<std::int64_t, Expected> expected_;  // by index, of frames that are under way
+  std::vector<JudgedPose> judged_;
   std::vector<double> latencies_ms_;
   std::int64_t good_frames_ = 0, received_ = 0, unreadable_ = 0, last_index_ = -1;
 
