@@ -32,6 +32,9 @@ void describe(const LocationFigures& figures, std::string& reason) {
   } else if (figures.agree < figures.asked) {
     reason.append(std::to_string(figures.agree)).append(" of ").append(std::to_string(figures.in_view));
     reason.append(" in view agree, ").append(std::to_string(figures.asked)).append(" asked for");
+  } else if (figures.is_leap) {
+    reason.append("the camera leapt, and ").append(std::to_string(figures.followed)).append(" of ");
+    reason.append(std::to_string(figures.tracks)).append(" tracks followed are too few to tell where to");
   } else {
     reason.append("the pose is uncertain by ");
     append(figures.deviation, reason);
@@ -76,12 +79,15 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   figures = {};
   figures.followed = static_cast<int>(frame.tracks.size());
   figures.tracks = static_cast<int>(last.tracks.size());
-  const AcceptanceContext context{last.inlier_count, prior.regains, frame.scene_depth};
+  const double followed_share = figures.followed / std::max(1.0, static_cast<double>(figures.tracks));
+  const double seconds = static_cast<double>(to.time_ns - from.time_ns) * 1e-9;
+  const AcceptanceContext context{last.inlier_count, prior.regains,           prior.knows_motion, frame.scene_depth,
+                                  seconds,           prior.world_T_predicted, followed_share};
   std::optional<FramePose> pose = poseInMap(view, prior, predicted, context, frame, figures, memory, clock);
   frame.position_is_held = !pose;
-  if (!pose && view.initialised) {
-    const double seconds = static_cast<double>(to.time_ns - from.time_ns) * 1e-9;
-    const HeldCamera held{last.world_T_camera, last.covariance, seconds, predicted.rotation, frame.scene_depth};
+  if (!pose && view.initialised && !figures.is_leap) {
+    const HeldCamera held{last.world_T_camera, last.covariance,    seconds,
+                          followed_share,      predicted.rotation, frame.scene_depth};
     pose = orientationOnly(camera_, view, frame.tracks, held, options_.pose, options_.orientation_only, &memory,
                            prior.motion);
   }
@@ -127,6 +133,7 @@ std::optional<FramePose> FrameLocation::poseInMap(const MapView& view, const Loc
   figures.has_pose = true;
   figures.deviation = largestDeviation(pose.result.covariance, context.scene_depth);
   figures.most_allowed = options_.acceptance.largest_deviation;
+  figures.is_leap = isLeap(pose, context, options_.acceptance);
   // A flat map fits a scene with depth only here and there: before the map stands every pose is believed.
   if (view.initialised && !isBelieved(pose, context, options_.acceptance)) return std::nullopt;
   return std::optional<FramePose>(std::move(pose));

@@ -38,6 +38,7 @@ struct LocationOptions {
 struct LocationPrior {
   Pose world_T_predicted;         // from motion alone
   bool regains = false;           // the frame before was blurred or lost
+  bool knows_motion = false;      // it and the one before that were located in this map
   const PointAccuracy& accuracy;  // of what is measured in this frame
   RowMotion motion;               // tells how the camera moves while its rows are read
 };
@@ -52,6 +53,7 @@ struct LocationFigures {
   int asked = 0;            // so many had to agree
   double deviation = 0;     // of the pose, as it is judged (pose_acceptance.h) ...
   double most_allowed = 0;  // ... which had to be less
+  bool is_leap = false;     // off the motion that was expected, with too few tracks followed
 };
 
 // Why no pose was found that can be believed, in words, in place of what is in `reason`.

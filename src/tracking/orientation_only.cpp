@@ -47,6 +47,7 @@ std::optional<FramePose> orientationOnly(const Camera& camera, const MapView& vi
                                          const RowMotion& motion) {
   if (!options.enabled || held.seconds_ago > options.longest_gap_s) return std::nullopt;
   if (static_cast<int>(tracks.size()) < options.fewest_tracks) return std::nullopt;
+  if (held.followed_share < options.least_followed_share) return std::nullopt;
   const Pose start{held.world_R_camera, held.world_T_last.translation};
   const double moved_depths = options.speed * held.seconds_ago;
   FramePose pose(memory);

@@ -16,11 +16,12 @@ namespace edgeslam {
 
 struct OrientationOnlyOptions {
   bool enabled = true;
-  double speed = 0.5;            // of the camera, standard deviation [distances of the scene/s]
-  double longest_gap_s = 0.15;   // since the camera was located: later it may be anywhere, and is looked for
-  int fewest_tracks = 30;        // that are followed into the frame
-  double least_share = 0.7;      // of all tracks that turn with the camera, within what its motion may move them
-  double least_map_share = 0.5;  // of the map points in view that agree
+  double speed = 0.5;                 // of the camera, standard deviation [distances of the scene/s]
+  double longest_gap_s = 0.15;        // since the camera was located: later it may be anywhere, and is looked for
+  int fewest_tracks = 30;             // that are followed into the frame ...
+  double least_followed_share = 0.2;  // ... of the last frame's: with fewer it is another place
+  double least_share = 0.7;           // of all tracks that turn with the camera, within what its motion may move them
+  double least_map_share = 0.5;       // of the map points in view that agree
   double largest_position_deviation = 0.3;   // the position is held no longer: share of the scene's distance
   double largest_rotation_deviation = 0.05;  // [rad]
 };
@@ -30,6 +31,7 @@ struct HeldCamera {
   Pose world_T_last;                       // when it was located last ...
   Matrix6d covariance = Matrix6d::Zero();  // ... of the right-hand update [translation; rotation] ...
   double seconds_ago = 0;                  // ... so long ago
+  double followed_share = 1;               // of its tracks, into the frame
   Eigen::Quaterniond world_R_camera = Eigen::Quaterniond::Identity();  // now, as the images as a whole tell
   double scene_depth = 1;                                              // [map units]
 };

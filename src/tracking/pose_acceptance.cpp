@@ -18,9 +18,17 @@ int fewestInliers(std::size_t in_view, const AcceptanceContext& context, const A
   return static_cast<int>(std::ceil(fewest));
 }
 
+bool isLeap(const FramePose& pose, const AcceptanceContext& context, const AcceptanceOptions& options) {
+  if (!context.knows_motion || context.followed_share >= options.leap_followed_share) return false;
+  const Pose off = context.world_T_predicted.inverse() * pose.result.world_T_camera;
+  const double farthest = options.leap_speed * context.seconds;
+  return off.translation.norm() > farthest * context.scene_depth || Eigen::AngleAxisd(off.rotation).angle() > farthest;
+}
+
 bool isBelieved(const FramePose& pose, const AcceptanceContext& context, const AcceptanceOptions& options) {
   return pose.result.inlier_count >= fewestInliers(pose.track_of_observation.size(), context, options) &&
-         largestDeviation(pose.result.covariance, context.scene_depth) < options.largest_deviation;
+         largestDeviation(pose.result.covariance, context.scene_depth) < options.largest_deviation &&
+         !isLeap(pose, context, options);
 }
 
 }  // namespace edgeslam

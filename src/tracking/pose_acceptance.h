@@ -18,17 +18,28 @@ struct AcceptanceOptions {
   double regain_fewest_points_share = 0.3;
   double regain_inlier_share = 0.6;
   int fewest_points = 0;  // nor with fewer than so many
+  // A pose off the motion that was expected by what takes such a change of speed (distances of the scene/s, or rad/s)
+  // is a leap. A hand can jerk the camera, but then what was tracked is still in view; with fewer of the tracks
+  // followed the camera may have been carried off to a place that looks alike.
+  double leap_speed = 4.5;
+  double leap_followed_share = 0.6;
 };
 
 // What a pose is judged against.
 struct AcceptanceContext {
-  int inliers_before = 0;  // of the last frame that was located
-  bool regains = false;    // the frame before was blurred or lost
-  double scene_depth = 1;  // [map units]
+  int inliers_before = 0;     // of the last frame that was located
+  bool regains = false;       // the frame before was blurred or lost
+  bool knows_motion = false;  // the two frames before were located in this map, so that a motion is expected
+  double scene_depth = 1;     // [map units]
+  double seconds = 0;         // since the last frame that was located
+  Pose world_T_predicted;     // by the motion before
+  double followed_share = 1;  // of the last frame's tracks, into this one
 };
 
 // With fewer of the map points in view a pose is not believed.
 int fewestInliers(std::size_t in_view, const AcceptanceContext& context, const AcceptanceOptions& options);
+
+bool isLeap(const FramePose& pose, const AcceptanceContext& context, const AcceptanceOptions& options);
 
 // Of a pose in a map that stands.
 bool isBelieved(const FramePose& pose, const AcceptanceContext& context, const AcceptanceOptions& options);

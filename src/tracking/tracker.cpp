@@ -161,16 +161,21 @@ void Tracker::helpStart(TrackedFrame& for_mapping) {
   for_mapping.inertia = motion_.inertia().linkSinceStart(last_.images->time_ns);
 }
 
-// Long after the last frame that was located its points are not looked for any more.
+// Long after the last frame that was located its points are not looked for any more, nor after a leap: a place that
+// looks alike goes on looking alike.
 bool Tracker::locate(Work& work) {
+  if (has_leapt_) return false;
   figures_ = {};
   if (!last_.isThere()) return false;
   const bool regains = lost_since_ns_ >= 0;
   if (regains && static_cast<double>(work.time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds) return false;
   scratch_.release();
-  const LocationPrior prior{motion_.predict(last_, work.time_ns, view_).world_T_camera, regains,
+  const LocationPrior prior{motion_.predict(last_, work.time_ns, view_).world_T_camera, regains, located_in_a_row_ >= 2,
                             preparation_.accuracy(), motion_.whileRowsAreRead(last_, work.time_ns, mapStands())};
-  return location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
+  const bool is_located = location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
+  has_leapt_ = figures_.is_leap;
+  if (has_leapt_) frame_.tracks.clear();  // nor is it recovered by them
+  return is_located;
 }
 
 // By the map's points, or else by the wheels; these also where the points tell how the camera turned, but not where it
@@ -261,7 +266,7 @@ void Tracker::beginWorld() {
   spare_.forget();
   view_.initialised = false;
   is_lost_ = false;
-  lost_since_ns_ = -1;
+  beFound();
   last_.forget();
   motion_.forget();
   motion_.inertia().forgetLink();
@@ -416,7 +421,8 @@ Matrix6d Tracker::withSharedNoise(const Matrix6d& covariance) const {
 void Tracker::remember() {
   if (is_lost_) preparation_.forgetSharpness();
   is_lost_ = false;
-  lost_since_ns_ = -1;
+  beFound();
+  located_in_a_row_ = mapStands() ? located_in_a_row_ + 1 : 0;
   const double sigma = std::sqrt(withSharedNoise(frame_.covariance).topLeftCorner<3, 3>().trace() / 3);
   motion_.observe(last_, frame_, sigma, view_);
   if (!options_.map_is_frozen) keyframes_.follow(frame_);
@@ -484,7 +490,13 @@ bool Tracker::isLostBriefly(std::int64_t time_ns) const {
 }
 
 void Tracker::beLostSince(std::int64_t time_ns) {
+  located_in_a_row_ = 0;
   if (lost_since_ns_ < 0) lost_since_ns_ = time_ns;
+}
+
+void Tracker::beFound() {
+  lost_since_ns_ = -1;
+  has_leapt_ = false;
 }
 
 const EdgeMap* Tracker::latestEdges() const {
@@ -531,7 +543,7 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   motion_.goOnFrom(last_);
   if (view_.keyframes.contains(kept_number_)) motion_.inertia().linkFrom(kept_number_, last_.images->time_ns);
   is_lost_ = false;
-  lost_since_ns_ = -1;
+  beFound();
   preparation_.forgetSharpness();
   keyframes_.seen(view_.latest_keyframe);
   keyframes_.forgetAverage();

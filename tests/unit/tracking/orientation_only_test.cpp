@@ -128,6 +128,14 @@ TEST_F(OrientationOnly, TooFewTracksAreNoPose) {
   EXPECT_FALSE(pose());
 }
 
+TEST_F(OrientationOnly, NothingWhereHardlyAnyOfTheLastFramesTracksAreLeft) {
+  follow(turned, 0);
+  held_.followed_share = 1.1 * options_.least_followed_share;
+  EXPECT_TRUE(pose());
+  held_.followed_share = 0.9 * options_.least_followed_share;
+  EXPECT_FALSE(pose());
+}
+
 TEST_F(OrientationOnly, NothingAfterAGap) {
   follow(turned, 0);
   held_.seconds_ago = 1.1 * options_.longest_gap_s;
