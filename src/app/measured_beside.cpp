@@ -5,6 +5,7 @@
 
 #include "frames/inertial_file.h"
 #include "frames/wheel_file.h"
+#include "inertia/saturation_watch.h"
 #include "recording/recording_source.h"
 
 namespace edgeslam {
@@ -18,6 +19,13 @@ std::vector<Sample> recorded(const Recording& recording, const std::vector<Given
   const bool is_repeated = !is_live && recording.decisions.not_recorded == 0;
   if (is_repeated) return samples;
   for (const Given& given : all) samples.push_back(given.*sample);
+  return samples;
+}
+
+// What is wrong with them, but not so much that they cannot be used.
+std::vector<InertialSample> toldOf(const InertialFiles& files, std::vector<InertialSample> samples) {
+  const std::string problem = saturationProblem(samples);
+  if (!problem.empty()) std::cerr << "edgeslam: " << files.samples << ": " << problem << "\n";
   return samples;
 }
 
@@ -35,11 +43,11 @@ std::vector<InertialSample> inertiaBeside(const FrameSource& source, const Measu
     if (use.imu && given.empty()) throw InputError(recording->folder + ": the run was recorded without inertial data");
     return recorded(*recording, given, &InertiaGiven::sample, use.is_live);
   }
-  if (configured.has_unit) return readInertialSamples(files);
+  if (configured.has_unit) return toldOf(files, readInertialSamples(files));
   InertialRecording beside = readInertialRecording(files);
   configured.unit = beside.unit;
   configured.has_unit = true;
-  return std::move(beside.samples);
+  return toldOf(files, std::move(beside.samples));
 }
 
 // What is merely configured is used where it is there.

@@ -1,4 +1,4 @@
-// Tells what is wrong with what an inertial unit gives, from the data alone: its units, and how it comes.
+// Tells what is wrong with what an inertial unit gives, from the data alone: its units, its range, and how it comes.
 #pragma once
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <string>
 
 #include "inertia/inertial_unit.h"
+#include "inertia/saturation_watch.h"
 #include "samples/arrival_watch.h"
 
 namespace edgeslam {
@@ -28,6 +29,7 @@ class InertialWatch {
 
  private:
   ArrivalWatch arrivals_;
+  SaturationWatch saturation_;
   std::array<double, ArrivalWatch::window> rates_{}, forces_{};  // rings: lengths [rad/s], [m/s^2]
   std::size_t count_ = 0;                                        // ever
 };

@@ -68,6 +68,31 @@ TEST_F(Inertia, ThatIsNotThereOrCannotBeUsedIsSaid) {
   EXPECT_NE(missing.messages.find("imu.csv"), std::string::npos) << missing.messages;
 }
 
+// The run goes on all the same.
+TEST_F(Inertia, ThatIsCutOffIsSaid) {
+  for (const char* name : {"rgb", "rgb.txt", "camera.yaml", "imu.yaml"}) {
+    std::filesystem::create_symlink(input_ + "/" + name, folder_.path(name));
+  }
+  // Its turns about z go beyond what the unit can measure for a moment.
+  std::istringstream samples(fileContent(input_ + "/imu.csv"));
+  std::string line, cut;
+  for (int i = 0; std::getline(samples, line); ++i) {
+    if (i > 1000 && i <= 1006) {
+      std::size_t z = 0;
+      for (int column = 0; column < 3; ++column) z = line.find(',', z) + 1;
+      line.replace(z, line.find(',', z) - z, " 4.36");
+    }
+    cut += line + "\n";
+  }
+  folder_.write("imu.csv", cut);
+  const Outcome outcome =
+      runProgram({"replay", folder_.path(""), "--imu", "--output", folder_.path("cut"), "--drawings", "0"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.messages.find("imu.csv: the gyroscope is cut off at 4.36 rad/s along its z axis"),
+            std::string::npos)
+      << outcome.messages;
+}
+
 TEST_F(Inertia, ARecordingRepeatsTheLiveRunToTheLastByte) {
   replayedWith("live", {"--imu", "--realtime", "--record", folder_.path("recording")});
   EXPECT_NE(fileContent(folder_.path("recording/decisions.txt")).find("\ninertia "), std::string::npos);
