@@ -2,6 +2,7 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "files/format_text.h"
@@ -42,6 +43,41 @@ std::string worldText(const WorldFigures& figures) {
   return text;
 }
 
+// Of a world whose scale is known, by inertia or by wheels.
+struct WorldScale {
+  double metres_per_unit = 1, sigma = 0;  // the standard deviation as a share of it
+  const char* source = "";
+  std::optional<Eigen::Vector3d> down;  // unit vector, the world's frame
+};
+
+std::optional<WorldScale> scaleOf(const Map& map, int world) {
+  if (const auto found = map.inertia.find(world); found != map.inertia.end() && found->second.is_known) {
+    const InertialAlignment& alignment = found->second;
+    return WorldScale{alignment.metres_a_unit, alignment.scale_sigma, "inertia", alignment.gravity.normalized()};
+  }
+  if (const auto found = map.wheels.find(world); found != map.wheels.end() && found->second.is_known) {
+    return WorldScale{found->second.metres_a_unit, found->second.sigma, "wheels", std::nullopt};
+  }
+  return std::nullopt;
+}
+
+std::string scaleText(const Map& map, int world) {
+  const std::optional<WorldScale> scale = scaleOf(map, world);
+  if (!scale) return "    how long a map unit is is not known (scale.metres_per_unit)\n";
+  std::string text = formatted("    a map unit is %.4g m +- %.1f %%, by %s", scale->metres_per_unit, 100 * scale->sigma,
+                               scale->source);
+  if (scale->down) text += formatted("; down is %.3f %.3f %.3f", scale->down->x(), scale->down->y(), scale->down->z());
+  return text + "\n";
+}
+
+nlohmann::json scaleJson(const Map& map, int world) {
+  const std::optional<WorldScale> scale = scaleOf(map, world);
+  if (!scale) return nullptr;
+  nlohmann::json json{{"metres_per_unit", scale->metres_per_unit}, {"sigma", scale->sigma}, {"source", scale->source}};
+  if (scale->down) json["down"] = {scale->down->x(), scale->down->y(), scale->down->z()};
+  return json;
+}
+
 nlohmann::json extentJson(const MapExtent& extent) {
   const auto triple = [](const Eigen::Vector3d& v) { return nlohmann::json::array({v.x(), v.y(), v.z()}); };
   return {{"least", triple(extent.least)}, {"most", triple(extent.most)}};
@@ -80,13 +116,18 @@ std::string mapInfoText(const std::string& path, std::uint64_t bytes, const Save
   std::string text = path +
                      formatted(": format version %u, %.2f MB\n", saved.version, 1e-6 * static_cast<double>(bytes)) +
                      cameraText(saved.camera);
-  for (const WorldFigures& figures : figuresOf(saved.map)) text += worldText(figures);
-  return text + "  lengths are in map units: a saved map has no scale (scale.metres_per_unit)\n";
+  for (const WorldFigures& figures : figuresOf(saved.map)) {
+    text += worldText(figures) + scaleText(saved.map, figures.world);
+  }
+  return text + "  lengths are in map units\n";
 }
 
 nlohmann::json mapInfoJson(const std::string& path, std::uint64_t bytes, const SavedMap& saved) {
   nlohmann::json worlds = nlohmann::json::array();
-  for (const WorldFigures& figures : figuresOf(saved.map)) worlds.push_back(worldJson(figures));
+  for (const WorldFigures& figures : figuresOf(saved.map)) {
+    worlds.push_back(worldJson(figures));
+    worlds.back()["scale"] = scaleJson(saved.map, figures.world);
+  }
   return {{"file", path},
           {"format_version", saved.version},
           {"bytes", bytes},

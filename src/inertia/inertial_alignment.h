@@ -10,9 +10,14 @@ namespace edgeslam {
 // say.
 constexpr double honest_times = 2;
 
+// Standard deviations of biases that are not known yet, each axis.
+constexpr double unknown_rate_bias = 0.1;   // [rad/s]
+constexpr double unknown_force_bias = 0.3;  // [m/s^2]
+
 struct InertialAlignment {
   InertialBias bias;                                  // of the unit, lately
-  double rate_bias_sigma = 0.1;                       // standard deviation, each axis [rad/s]
+  double rate_bias_sigma = unknown_rate_bias;         // standard deviation, each axis [rad/s]
+  bool is_bias_known = false;                         // in this run: a unit that is switched on has others
   bool is_known = false;                              // else all that follows means nothing
   double metres_a_unit = 1;                           // of the map
   double scale_sigma = 0;                             // standard deviation of it, share of it

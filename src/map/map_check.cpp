@@ -165,6 +165,27 @@ std::string unknownLineProblem(const Map& map, const Keyframe& keyframe) {
   return "";
 }
 
+std::string scaleProblem(double metres_a_unit, double sigma) {
+  if (!isPositive(metres_a_unit)) return "the metres of a map unit must be greater than 0";
+  return sigma >= 0 && isBounded(sigma) ? "" : "the standard deviation of its scale is out of range";
+}
+
+// Of what is known only.
+std::string lieProblem(const Map& map) {
+  for (const auto& [world, alignment] : map.inertia) {
+    if (!alignment.is_known) continue;
+    std::string problem = scaleProblem(alignment.metres_a_unit, alignment.scale_sigma);
+    if (!(std::abs(alignment.gravity.norm() - standard_gravity) < 1e-3)) problem = "gravity has another length";
+    if (!problem.empty()) return "how world " + std::to_string(world) + " lies: " + problem;
+  }
+  for (const auto& [world, scale] : map.wheels) {
+    if (!scale.is_known) continue;
+    const std::string problem = scaleProblem(scale.metres_a_unit, scale.sigma);
+    if (!problem.empty()) return "the scale of world " + std::to_string(world) + ": " + problem;
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string cameraProblem(const Camera& camera) {
@@ -200,7 +221,7 @@ std::string mapProblem(const Camera& camera, const Map& map) {
     const std::string problem = line.id == id ? lineProblem(map, line) : "is kept under another number";
     if (!problem.empty()) return "line " + std::to_string(id) + ": " + problem;
   }
-  return "";
+  return lieProblem(map);
 }
 
 }  // namespace edgeslam

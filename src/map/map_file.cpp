@@ -2,26 +2,30 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "image_formats/png.h"
 #include "map/little_endian.h"
 #include "map/map_check.h"
+#include "map/worlds.h"
 
 namespace edgeslam {
 namespace {
 
 constexpr std::string_view magic("EDGESLAM MAP\r\n\x1a\n", 16);
-constexpr std::uint32_t version_with_worlds = 2, version_with_readout = 3, version_with_lines = 3;
+constexpr std::uint32_t version_with_worlds = 2, version_with_readout = 3, version_with_lines = 3,
+                        version_with_lies = 4;
 constexpr std::size_t header_size = 28, checksum_size = 4;
 constexpr std::string_view camera_section = "CAMR", keyframe_section = "KEYF", point_section = "PNTS",
-                           line_section = "LINE";
+                           line_section = "LINE", lie_section = "LIES";
 
 // Bytes of a record that has nothing of variable length; of a keyframe and an observation in the first version, where
 // they are shortest.
 constexpr std::size_t observation_size = 89, least_keyframe_size = 93, least_point_size = 73, keyframe_id_size = 4;
 constexpr std::size_t straight_edge_size = 96, least_line_size = 85;
+constexpr std::size_t inertial_lie_size = 44, wheel_lie_size = 20;
 
 // A few bytes of PNG can become a large image; all together may take so much memory [byte].
 constexpr std::uint64_t largest_images = std::uint64_t{1} << 32;
@@ -82,6 +86,17 @@ void lineFields(Stream& stream, LineFields& line) {
   stream(line.is_placed, line.begin, line.end);
 }
 
+template <typename Stream, typename World, typename AlignmentFields>
+void inertialLieFields(Stream& stream, World& world, AlignmentFields& alignment) {
+  stream(world, alignment.metres_a_unit, alignment.scale_sigma);
+  stream(alignment.gravity[0], alignment.gravity[1], alignment.gravity[2]);
+}
+
+template <typename Stream, typename World, typename ScaleFields>
+void wheelLieFields(Stream& stream, World& world, ScaleFields& scale) {
+  stream(world, scale.metres_a_unit, scale.sigma);
+}
+
 std::uint32_t checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
@@ -135,6 +150,29 @@ void writeLines(ByteWriter& writer, const Map& map) {
   writer(map.next_line);
   writer.u64(map.lines.size());
   for (const auto& [id, line] : map.lines) writeLine(writer, line);
+  writer.endLength(begin);
+}
+
+// Those that are known, of worlds that have keyframes.
+template <typename Lie>
+std::map<int, Lie> knownLies(const Map& map, const std::map<int, Lie>& lies) {
+  std::map<int, Lie> known;
+  for (const Keyframe& keyframe : map.keyframes) {
+    const auto lie = lies.find(keyframe.world);
+    if (lie != lies.end() && lie->second.is_known) known.insert(*lie);
+  }
+  return known;
+}
+
+void writeLies(ByteWriter& writer, const Map& map) {
+  const std::map<int, InertialAlignment> inertia = knownLies(map, map.inertia);
+  const std::map<int, WheelScale> wheels = knownLies(map, map.wheels);
+  writer.raw(lie_section);
+  const std::size_t begin = writer.beginLength();
+  writer.u64(inertia.size());
+  for (const auto& [world, alignment] : inertia) inertialLieFields(writer, world, alignment);
+  writer.u64(wheels.size());
+  for (const auto& [world, scale] : wheels) wheelLieFields(writer, world, scale);
   writer.endLength(begin);
 }
 
@@ -257,6 +295,44 @@ void readLines(ByteReader reader, Map& map) {
   reader.expectEnd();
 }
 
+template <typename Lie>
+void insertLie(const ByteReader& reader, int world, const Lie& lie, std::map<int, Lie>& lies) {
+  if (!lies.empty() && world <= lies.rbegin()->first) {
+    reader.fail("how world " + std::to_string(world) + " lies comes after " + std::to_string(lies.rbegin()->first));
+  }
+  lies.emplace_hint(lies.end(), world, lie);
+}
+
+// The unit's biases are those of the run to come. What told the scale is not in the file, so that it is not adjusted
+// again with the whole map.
+void readLies(ByteReader reader, Map& map) {
+  for (std::size_t left = reader.count(inertial_lie_size); left > 0; --left) {
+    int world = 0;
+    InertialAlignment alignment;
+    inertialLieFields(reader, world, alignment);
+    alignment.is_known = true;
+    alignment.force_bias_sigma = unknown_force_bias;
+    alignment.adjusted_scale_sigma = 0;
+    insertLie(reader, world, alignment, map.inertia);
+  }
+  for (std::size_t left = reader.count(wheel_lie_size); left > 0; --left) {
+    int world = 0;
+    WheelScale scale;
+    wheelLieFields(reader, world, scale);
+    scale.is_known = true;
+    insertLie(reader, world, scale, map.wheels);
+  }
+  reader.expectEnd();
+}
+
+std::string strayLie(const Map& map) {
+  const std::vector<int> worlds = worldsOf(map);
+  const auto isThere = [&](const auto& lie) { return std::binary_search(worlds.begin(), worlds.end(), lie.first); };
+  const bool are_there = std::all_of(map.inertia.begin(), map.inertia.end(), isThere) &&
+                         std::all_of(map.wheels.begin(), map.wheels.end(), isThere);
+  return are_there ? "" : "it tells how a world lies that has no keyframes";
+}
+
 // The payload of a file that is whole and of a version that this program reads, which `version` gets.
 ByteReader openPayload(std::string_view bytes, const std::string& name, std::uint32_t& version) {
   if (bytes.substr(0, magic.size()) != magic.substr(0, bytes.size())) {
@@ -296,6 +372,7 @@ std::string encodeMap(const SavedMap& saved) {
   writeList(file, keyframe_section, saved.map.keyframes, [&](const Keyframe& k) { writeKeyframe(file, k); });
   writeList(file, point_section, saved.map.points, [&](const auto& entry) { writePoint(file, entry.second); });
   writeLines(file, saved.map);
+  writeLies(file, saved.map);
   file.endLength(payload);
   file.u32(checksum(file.bytes()));
   return file.take();
@@ -309,8 +386,10 @@ SavedMap decodeMap(std::string_view bytes, const std::string& name) {
   readKeyframes(openSection(payload, keyframe_section), {saved.camera.width, saved.camera.height}, version, saved.map);
   readPoints(openSection(payload, point_section), saved.map);
   if (version >= version_with_lines) readLines(openSection(payload, line_section), saved.map);
+  if (version >= version_with_lies) readLies(openSection(payload, lie_section), saved.map);
   payload.expectEnd();
-  const std::string problem = mapProblem(saved.camera, saved.map);
+  std::string problem = mapProblem(saved.camera, saved.map);
+  if (problem.empty()) problem = strayLie(saved.map);
   if (!problem.empty()) throw InputError(name + ": " + problem);
   return saved;
 }

@@ -1,12 +1,12 @@
 // The saved map: all of a map in one run of bytes, versioned and with a checksum, the same on every machine.
 //
 // Numbers are little endian: u32 u64 i32 i64, f64 (IEEE 754), flag (one byte, 0 or 1). A text and an image are a u64
-// length and so many bytes; a list is a u64 count and so many records. The layout of version 3:
+// length and so many bytes; a list is a u64 count and so many records. The layout of version 4:
 //
 //   "EDGESLAM MAP\r\n\x1a\n"   16 bytes
 //   version                    u32
 //   length of the payload      u64
-//   payload                    the sections CAMR, KEYF, PNTS, LINE: four letters, u64 length, content
+//   payload                    the sections CAMR, KEYF, PNTS, LINE, LIES: four letters, u64 length, content
 //   checksum                   u32, CRC-32 (zlib's crc32) of all bytes before it
 //
 //   CAMR   model u32 (0 pinhole with radial-tangential distortion, 1 Kannala-Brandt), width i32, height i32 [px],
@@ -26,6 +26,10 @@
 //   and
 //          the direction in the host 6 f64, placed flag, begin and end f64 [map units], seen in (list of i32,
 //          ascending)
+//   LIES   (not in versions 1 to 3) how worlds lie to the earth, where it is known: list of those of an inertial unit,
+//          worlds ascending: world i32, metres a map unit f64, its standard deviation as a share of it f64, gravity x y
+//          z in the world 3 f64 [m/s^2]; list of those of wheels, worlds ascending: world i32, metres a map unit and
+//          its standard deviation f64
 //
 // What stands before the payload, and the checksum, stay as they are in every version.
 #pragma once
@@ -39,7 +43,7 @@
 
 namespace edgeslam {
 
-constexpr std::uint32_t map_format_version = 3;
+constexpr std::uint32_t map_format_version = 4;
 
 struct SavedMap {
   Camera camera;  // whose pixels the observations are

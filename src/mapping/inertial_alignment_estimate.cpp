@@ -14,9 +14,7 @@ namespace {
 
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
 
-constexpr double rate_bias_prior = 0.1;    // standard deviation of what is not known yet [rad/s]
-constexpr double force_bias_prior = 0.3;   // likewise [m/s^2]
-constexpr double bias_change_prior = 0.1;  // of what is known, as a share of these: biases walk
+constexpr double bias_change_prior = 0.1;  // of biases that are known, as a share of unknown ones: they walk
 constexpr double turn_sigma = 1e-3;        // of keyframes against each other [rad]
 constexpr double huber = 2;
 constexpr double three_normal_median = 2.366;  // of the squared norm of three standard normal variables
@@ -41,7 +39,7 @@ std::vector<const Keyframe*> latestKeyframes(const Map& map, int world, int most
 // How far the turns of keyframes and of the gyroscope differ, and its bias, which explains most of that.
 struct RateBias {
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
-  double sigma = rate_bias_prior;
+  double sigma = unknown_rate_bias;
   double turned = 0, contradicted = 0;  // root of the sum of squares [rad]
 };
 
@@ -232,9 +230,9 @@ InertialAlignmentEstimate estimateInertialAlignment(const InertialUnit& unit, co
                                                     const WheelScale& wheels) {
   InertialAlignmentEstimate estimate{so_far, {}, ""};
   const std::vector<const Keyframe*> keyframes = latestKeyframes(map, world, options.most_keyframes);
-  const double rate_prior = so_far.is_known ? bias_change_prior * rate_bias_prior : rate_bias_prior;
-  const RateBias rates =
-      estimateRateBias(keyframes, map, unit.imu_T_camera.rotation.conjugate(), so_far.bias, rate_prior);
+  const double unknown_share = so_far.is_bias_known ? bias_change_prior : 1;
+  const RateBias rates = estimateRateBias(keyframes, map, unit.imu_T_camera.rotation.conjugate(), so_far.bias,
+                                          unknown_share * unknown_rate_bias);
   if (rates.contradicted > largest_turn_error * rates.turned && rates.contradicted > largest_turn_error_rad) {
     estimate.lacking = "inertia: the gyroscope contradicts the camera's turns; are its axes and imu_T_camera right?";
     return estimate;
@@ -249,7 +247,7 @@ InertialAlignmentEstimate estimateInertialAlignment(const InertialUnit& unit, co
     estimate.lacking = "inertia: the map is too young for its scale";
     return estimate;
   }
-  const double force_prior = so_far.is_known ? bias_change_prior * force_bias_prior : force_bias_prior;
+  const double force_prior = unknown_share * unknown_force_bias;
   Solution solution{so_far.metres_a_unit, so_far.gravity, Eigen::Vector3d::Zero(), 0, 0, true};
   if (!so_far.is_known) solution = solveFreely(equations, wheels, force_prior);
   if (solution.is_determined) solution = solve(equations, solution, so_far, wheels, force_prior);
@@ -260,7 +258,7 @@ InertialAlignmentEstimate estimateInertialAlignment(const InertialUnit& unit, co
   }
   found = with(solution, found);
   if (wheels.is_known) found.scale_sigma = wheels.sigma;
-  found.is_known = true;
+  found.is_known = found.is_bias_known = true;
   return estimate;
 }
 

@@ -187,7 +187,8 @@ void Mapper::alignToEarth() {
                                 alignment, wheels ? *wheels : WheelScale());
   lacking_ = estimate.lacking;
   if (was_known) {
-    if (estimate.lacking.empty()) alignment = estimate.alignment;
+    // Of a saved map the gyroscope's bias is found before the others.
+    if (estimate.lacking.empty() || !alignment.is_bias_known) alignment = estimate.alignment;
     const bool is_due = ++keyframes_since_alignment_ >= options_.alignment_interval;
     if (is_due && alignment.adjusted_scale_sigma > options_.well_known_scale_sigma) alignWithMap(alignment);
     return;
@@ -211,7 +212,7 @@ void Mapper::alignWithMap(const InertialAlignment& start) {
     if (!start.is_known) lacking_ = speed_changes_too_little;
     return;
   }
-  alignment.is_known = true;
+  alignment.is_known = alignment.is_bias_known = true;
   lacking_.clear();
   map_ = std::move(aligned);
 }

@@ -67,6 +67,8 @@ Map renumbered(const Map& added, const Offsets& offsets) {
     map.lines.emplace_hint(map.lines.end(), line.id, std::move(line));
   }
   map.next_line = offsets.line + added.next_line;
+  for (const auto& [world, alignment] : added.inertia) map.inertia.emplace(world + offsets.world, alignment);
+  for (const auto& [world, scale] : added.wheels) map.wheels.emplace(world + offsets.world, scale);
   return map;
 }
 
@@ -76,6 +78,8 @@ Map together(const Map& map, const Map& renumbered) {
   both.points.insert(renumbered.points.begin(), renumbered.points.end());
   both.lines.insert(renumbered.lines.begin(), renumbered.lines.end());
   both.next_line = renumbered.next_line;
+  both.inertia.insert(renumbered.inertia.begin(), renumbered.inertia.end());
+  both.wheels.insert(renumbered.wheels.begin(), renumbered.wheels.end());
   return both;
 }
 

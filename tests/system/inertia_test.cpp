@@ -45,6 +45,26 @@ TEST_F(Inertia, GivesPosesWhileTheLensIsCovered) {
   EXPECT_LT(largest_m, 0.05);
 }
 
+// From the first pose on, also by the camera alone: the robot that is switched on again knows how large its map is.
+TEST_F(Inertia, GivesMetresToWhoeverGoesOnWithTheMap) {
+  const std::string map = folder_.path("saved.map");
+  replayedWith("before", {"--imu", "--map-out", map});
+  const Outcome info = runProgram({"map", "info", map});
+  EXPECT_NE(info.output.find(" m +- "), std::string::npos) << info.output;
+  for (const std::vector<std::string>& with : {std::vector<std::string>{}, std::vector<std::string>{"--imu"}}) {
+    const std::string name = with.empty() ? "camera" : "unit";
+    std::vector<std::string> more{"--map-in", map};
+    more.insert(more.end(), with.begin(), with.end());
+    const ReplayedRun run = replayedWith(name, more);
+    EXPECT_NE(run.outcome.output.find("lengths are metres"), std::string::npos) << run.outcome.output;
+    const AbsoluteError error = errorOf(name);
+    EXPECT_LT(error.translation.rmse, 0.01);
+    EXPECT_NEAR(error.reference_T_estimate.scale, 1, 0.02);
+    const Eigen::Vector3d up = error.reference_T_estimate.rotation * Eigen::Vector3d::UnitZ();
+    EXPECT_LT(std::acos(up.z()), 0.01) << "the world's z is not up";
+  }
+}
+
 TEST_F(Inertia, GivesTheSameBytesTwice) {
   replayedWith("once", {"--imu"});
   replayedWith("twice", {"--imu"});

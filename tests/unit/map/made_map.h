@@ -49,7 +49,8 @@ inline SeenEdge madeEdge(LineId line, int width, int height) {
 }
 
 // Keyframes 0, 1, 4 and 9, of which 0 and 4 have images; points 2, 3, 5 and 40000000000. Point 2 is a track without a
-// depth. Line 3, which keyframes 0 and 4 see, is placed, line 8 is not.
+// depth. Line 3, which keyframes 0 and 4 see, is placed, line 8 is not. How the world lies is known, and its scale by
+// wheels.
 inline SavedMap madeMap(int width, int height) {
   SavedMap saved;
   saved.camera.model = CameraModel::kannala_brandt;
@@ -101,6 +102,12 @@ inline SavedMap madeMap(int width, int height) {
       3, MapLine{3, 4, {{1.0 / 3, -0.0, 5e-324}, Eigen::Vector3d(1, -2, 3).normalized()}, true, -0.1, 1.0 / 3, {0, 4}});
   saved.map.lines.emplace(8, MapLine{8, 4, {}, false, 0, 0, {4}});
   saved.map.next_line = 12;
+  InertialAlignment& alignment = saved.map.inertia[0];
+  alignment.is_known = true;
+  alignment.metres_a_unit = 1.0 / 3;
+  alignment.scale_sigma = 0.1 / 3;
+  alignment.gravity = standard_gravity * Eigen::Vector3d(0.1, 1, -0.2).normalized();
+  saved.map.wheels[0] = {true, 1.0 / 7, 0.01 / 3};
   return saved;
 }
 

@@ -54,6 +54,19 @@ std::string sealed(std::string bytes) {
   return bytes + littleEndian(checksum, 4);
 }
 
+SavedMap mapOfOneKeyframe() {
+  SavedMap saved;
+  saved.camera = test::madeMap(32, 24).camera;
+  Keyframe keyframe;
+  keyframe.world = 5;
+  keyframe.frame_index = 17;
+  keyframe.world_T_camera.translation = {1, 2, 3};
+  keyframe.twist << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6;
+  keyframe.reason = "turn";
+  saved.map.keyframes.push_back(keyframe);
+  return saved;
+}
+
 // What decodeMap refuses the bytes with; empty where it does not.
 std::string refusal(const std::string& bytes) {
   try {
@@ -103,8 +116,9 @@ TEST(MapFile, AnEmptyMapIsAHeaderACameraAndEmptyLists) {
                               "\0\0\0\0\0\0\xF8\x3F"s + two + one + zero + zero + zero + zero + zero +
                               "\0\0\0\0\0\0\0\xC0"s + "\0\0\0\0\0\0\xC0\x3F"s;
   const std::string payload = "CAMR" + littleEndian(92, 8) + content + "KEYF" + littleEndian(8, 8) + zero + "PNTS" +
-                              littleEndian(8, 8) + zero + "LINE" + littleEndian(16, 8) + zero + zero;
-  const std::string header = "EDGESLAM MAP\r\n\x1a\n" + littleEndian(3, 4) + littleEndian(payload.size(), 8);
+                              littleEndian(8, 8) + zero + "LINE" + littleEndian(16, 8) + zero + zero + "LIES" +
+                              littleEndian(16, 8) + zero + zero;
+  const std::string header = "EDGESLAM MAP\r\n\x1a\n" + littleEndian(4, 4) + littleEndian(payload.size(), 8);
   const std::string bytes = encodeMap(saved);
   EXPECT_EQ(bytes.substr(0, bytes.size() - checksum_size), header + payload);
   EXPECT_EQ(bytes, sealed(bytes));
@@ -136,6 +150,14 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
   saved.map.points.emplace(5, point);
   saved.map.lines.emplace(39, MapLine{39, 51, {{52, 53, 54}, {55, 56, 57}}, true, 58, 59, {60}});
   saved.map.next_line = 61;
+  InertialAlignment& alignment = saved.map.inertia[3];
+  alignment.is_known = true;
+  alignment.metres_a_unit = 62;
+  alignment.scale_sigma = 63;
+  alignment.gravity = {64, 65, 66};
+  saved.map.wheels[3] = {true, 67, 68};
+  saved.map.wheels[4] = {true, 69, 70};   // a world that is gone
+  saved.map.inertia[2].is_known = false;  // not known
   const std::string bytes = encodeMap(saved);
 
   const std::string observed = littleEndian(5, 8) + littleEndian({1, 2, 3, 4, 5, 6, 7, 8, 9}) + '\1' +
@@ -152,9 +174,36 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
   const std::string lines = littleEndian(61, 8) + littleEndian(1, 8) + littleEndian(39, 8) + littleEndian(51, 4) +
                             littleEndian({52, 53, 54, 55, 56, 57}) + '\1' + littleEndian({58, 59}) +
                             littleEndian(1, 8) + littleEndian(60, 4);
+  const std::string lies = littleEndian(1, 8) + littleEndian(3, 4) + littleEndian({62, 63, 64, 65, 66}) +
+                           littleEndian(1, 8) + littleEndian(3, 4) + littleEndian({67, 68});
   const std::string sections = "KEYF" + littleEndian(keyframes.size(), 8) + keyframes + "PNTS" +
-                               littleEndian(points.size(), 8) + points + "LINE" + littleEndian(lines.size(), 8) + lines;
+                               littleEndian(points.size(), 8) + points + "LINE" + littleEndian(lines.size(), 8) +
+                               lines + "LIES" + littleEndian(lies.size(), 8) + lies;
   EXPECT_EQ(bytes.substr(payload_begin + 104, bytes.size() - payload_begin - 104 - checksum_size), sections);
+}
+
+// What its own run felt is not in the file: a unit that is switched on has other biases, and the scale is kept.
+TEST(MapFile, BiasesAreThoseOfTheRunToCome) {
+  SavedMap saved = test::madeMap(32, 24);
+  InertialAlignment& alignment = saved.map.inertia[0];
+  alignment.bias = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}};
+  alignment.rate_bias_sigma = alignment.force_bias_sigma = 1e-4;
+  alignment.is_bias_known = true;
+  const InertialAlignment read = decodeMap(encodeMap(saved), "hall.map").map.inertia.at(0);
+  EXPECT_TRUE(read.is_known);
+  EXPECT_FALSE(read.is_bias_known);
+  EXPECT_TRUE(read.bias.rate.isZero() && read.bias.force.isZero());
+  EXPECT_EQ(read.rate_bias_sigma, unknown_rate_bias);
+  EXPECT_EQ(read.force_bias_sigma, unknown_force_bias);
+}
+
+TEST(MapFile, AWorldThatLiesSomehowHasKeyframes) {
+  const std::string lies = "LIES" + littleEndian(16 + 44, 8) + littleEndian(1, 8);
+  std::string bytes = encodeMap(mapOfOneKeyframe());
+  bytes.erase(bytes.size() - checksum_size - 28, 28);
+  bytes.insert(bytes.size() - checksum_size,
+               lies + littleEndian(4, 4) + littleEndian({1, 0.1, 0, 0, standard_gravity}) + littleEndian(0, 8));
+  EXPECT_EQ(refusal(sealed(bytes)), "hall.map: it tells how a world lies that has no keyframes");
 }
 
 TEST(MapFile, EveryChangedBitIsTold) {
@@ -189,7 +238,7 @@ TEST(MapFile, ANewerVersionIsTold) {
   std::string bytes = encodeMap(test::madeMap(32, 24));
   overwrite(bytes, 16, littleEndian(7, 4));
   EXPECT_EQ(refusal(sealed(bytes)),
-            "hall.map: map format version 7 is newer than 3, which this program reads: use a newer edgeslam");
+            "hall.map: map format version 7 is newer than 4, which this program reads: use a newer edgeslam");
   overwrite(bytes, 16, littleEndian(0, 4));
   EXPECT_EQ(refusal(sealed(bytes)), "hall.map: there is no map format version 0");
 }
@@ -209,19 +258,6 @@ TEST(MapFile, KeepsTheWorlds) {
   EXPECT_EQ(refusal(encodeMap(saved)), "hall.map: keyframe 2: there is no such world");
 }
 
-SavedMap mapOfOneKeyframe() {
-  SavedMap saved;
-  saved.camera = test::madeMap(32, 24).camera;
-  Keyframe keyframe;
-  keyframe.world = 5;
-  keyframe.frame_index = 17;
-  keyframe.world_T_camera.translation = {1, 2, 3};
-  keyframe.twist << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6;
-  keyframe.reason = "turn";
-  saved.map.keyframes.push_back(keyframe);
-  return saved;
-}
-
 // Bytes of a section taken out, by their place in its content.
 void cut(std::string& bytes, const std::string& section, std::size_t place, std::size_t size) {
   const std::size_t length = bytes.find(section) + 4;
@@ -229,8 +265,17 @@ void cut(std::string& bytes, const std::string& section, std::size_t place, std:
   bytes.erase(length + 8 + place, size);
 }
 
+// Which did not tell how worlds lie.
+std::string inTheThirdVersion(std::string bytes) {
+  constexpr std::size_t no_lies = 4 + 8 + 16;
+  bytes.erase(bytes.size() - checksum_size - no_lies, no_lies);
+  overwrite(bytes, 16, littleEndian(3, 4));
+  return sealed(bytes);
+}
+
 // Which had no lines, no readout, and no motion of a keyframe; of a map without observations.
 std::string inTheSecondVersion(std::string bytes) {
+  bytes = inTheThirdVersion(std::move(bytes));
   constexpr std::size_t no_lines = 4 + 8 + 16;
   bytes.erase(bytes.size() - checksum_size - no_lines, no_lines);
   cut(bytes, "KEYF", numberAt(bytes, bytes.find("KEYF") + 4) - 9, 8);  // before the flag
@@ -252,6 +297,7 @@ TEST(MapFile, ReadsTheVersionsBefore) {
   SavedMap saved = mapOfOneKeyframe();
   const std::string bytes = encodeMap(saved);
   test::expectSame(saved, decodeMap(bytes, "hall.map"));
+  test::expectSame(saved, decodeMap(inTheThirdVersion(bytes), "hall.map"));
   saved.camera.readout_s = 0;
   saved.map.keyframes[0].twist.setZero();
   const SavedMap second = decodeMap(inTheSecondVersion(bytes), "hall.map");

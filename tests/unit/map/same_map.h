@@ -123,6 +123,21 @@ inline void expectSame(const SavedMap& expected, const SavedMap& found) {
     ASSERT_EQ(found.map.lines.count(id), 1U);
     expectSameLine(line, found.map.lines.at(id));
   }
+  ASSERT_EQ(found.map.inertia.size(), expected.map.inertia.size());
+  for (const auto& [world, alignment] : expected.map.inertia) {
+    const InertialAlignment& other = found.map.inertia.at(world);
+    EXPECT_EQ(other.is_known, alignment.is_known);
+    expectSameBits(&alignment.metres_a_unit, &other.metres_a_unit, 1, "metres a unit");
+    expectSameBits(&alignment.scale_sigma, &other.scale_sigma, 1, "the scale's sigma");
+    expectSameBits(alignment.gravity.data(), other.gravity.data(), 3, "gravity");
+  }
+  ASSERT_EQ(found.map.wheels.size(), expected.map.wheels.size());
+  for (const auto& [world, scale] : expected.map.wheels) {
+    const WheelScale& other = found.map.wheels.at(world);
+    EXPECT_EQ(other.is_known, scale.is_known);
+    expectSameBits(&scale.metres_a_unit, &other.metres_a_unit, 1, "metres a unit by wheels");
+    expectSameBits(&scale.sigma, &other.sigma, 1, "sigma by wheels");
+  }
 }
 
 }  // namespace edgeslam::test
