@@ -60,7 +60,7 @@ TEST_F(MapCommand, InfoTellsWhatIsInAMapAndDrawsIt) {
   const std::string map = mapOf(hall, 0, 149, "hall.map");
   const nlohmann::json summary = nlohmann::json::parse(fileContent(path("hall.map_result/summary.json")));
   const nlohmann::json info = infoOf(map);
-  EXPECT_EQ(info["format_version"], 3);
+  EXPECT_EQ(info["format_version"], 4);
   EXPECT_EQ(info["bytes"], fs::file_size(map));
   EXPECT_EQ(info["camera"]["width"], 320);
   ASSERT_EQ(info["worlds"].size(), 1U);
