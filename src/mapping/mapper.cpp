@@ -194,7 +194,7 @@ void Mapper::alignToEarth() {
     return;
   }
   alignment = estimate.alignment;
-  alignment.is_known = false;
+  alignment.is_known = alignment.is_bias_known = false;
   if (estimate.lacking.empty()) alignWithMap(estimate.alignment);
   if (estimate.rough) alignWithMap(*estimate.rough);
 }
