@@ -6,6 +6,7 @@
 
 #include "calibration/pose_errors.h"
 #include "calibration/turn_alignment.h"
+#include "geometry/rolling_shutter.h"
 
 namespace edgeslam {
 namespace {
@@ -139,9 +140,8 @@ TurnError turnError(const TurnParameters& parameters, const CameraTurn& seen, co
   const Eigen::Quaterniond seen_by_unit = imu_R_camera * seen.rotation * imu_R_camera.conjugate();
   TurnError turn;
   turn.error = rotationLog((felt.rotation.conjugate() * seen_by_unit).normalized());
-  // Of SO(3): how a small rotation on the left, or on the right, of what is left changes its vector.
-  const Eigen::Matrix3d by_left = Eigen::Matrix3d::Identity() - 0.5 * skew(turn.error);
-  const Eigen::Matrix3d by_right = Eigen::Matrix3d::Identity() + 0.5 * skew(turn.error);
+  // How a small rotation on the right, or on the left, of what is left changes its vector.
+  const Eigen::Matrix3d by_right = rightJacobian(turn.error).inverse(), by_left = by_right.transpose();
   const Eigen::Matrix3d turned_back = seen.rotation.conjugate().toRotationMatrix();
   turn.by_parameters.leftCols<3>() =
       by_right * imu_R_camera.toRotationMatrix() * (turned_back - Eigen::Matrix3d::Identity());

@@ -33,16 +33,14 @@ void SaturationWatch::add(const InertialSample& sample) {
     axis.repeated = is_at_end ? (value == axis.last ? axis.repeated + 1 : 1) : 0;
     axis.largest = std::max(axis.largest, size);
     axis.last = value;
-    if (axis.repeated <= most_repeated) continue;
-    axis.was_ever_cut = true;
-    axis.cut_ns = time_ns_;
+    if (axis.repeated > most_repeated) axis.cut_ns = time_ns_;
   }
 }
 
 std::string SaturationWatch::problem() const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const Axis& axis = axes_[i];
-    if (!axis.was_ever_cut || time_ns_ - axis.cut_ns > told_for_ns) continue;
+    if (!axis.cut_ns || time_ns_ - *axis.cut_ns > told_for_ns) continue;
     return formatted("the %s is cut off at %.3g %s along its %c axis: set a larger range, or damp what shakes it",
                      isRate(i) ? "gyroscope" : "accelerometer", axis.largest, isRate(i) ? "rad/s" : "m/s^2",
                      "xyz"[i % 3]);
@@ -52,12 +50,11 @@ std::string SaturationWatch::problem() const {
 
 std::string saturationProblem(const std::vector<InertialSample>& samples) {
   SaturationWatch watch;
-  std::string problem;
   for (const InertialSample& sample : samples) {
     watch.add(sample);
-    if (problem.empty()) problem = watch.problem();
+    if (std::string problem = watch.problem(); !problem.empty()) return problem;
   }
-  return problem;
+  return "";
 }
 
 }  // namespace edgeslam

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,11 +22,10 @@ class SaturationWatch {
  private:
   // Of x, y, z of the rate, and then of the force.
   struct Axis {
-    double largest = 0;         // that came ever, without its sign
-    double last = 0;            // with it
-    int repeated = 0;           // so many times in a row, while it is the largest
-    std::int64_t cut_ns = 0;    // when that was too often last ...
-    bool was_ever_cut = false;  // ... if it was
+    double largest = 0;                  // that came ever, without its sign
+    double last = 0;                     // with it
+    int repeated = 0;                    // so many times in a row, while it is the largest
+    std::optional<std::int64_t> cut_ns;  // when that was too often last
   };
 
   std::array<Axis, 6> axes_;

@@ -171,17 +171,17 @@ std::string scaleProblem(double metres_a_unit, double sigma) {
 }
 
 // Of what is known only.
-std::string lieProblem(const Map& map) {
+std::string scalesProblem(const Map& map) {
   for (const auto& [world, alignment] : map.inertia) {
     if (!alignment.is_known) continue;
     std::string problem = scaleProblem(alignment.metres_a_unit, alignment.scale_sigma);
     if (!(std::abs(alignment.gravity.norm() - standard_gravity) < 1e-3)) problem = "gravity has another length";
-    if (!problem.empty()) return "how world " + std::to_string(world) + " lies: " + problem;
+    if (!problem.empty()) return "scale and gravity of world " + std::to_string(world) + ": " + problem;
   }
   for (const auto& [world, scale] : map.wheels) {
     if (!scale.is_known) continue;
     const std::string problem = scaleProblem(scale.metres_a_unit, scale.sigma);
-    if (!problem.empty()) return "the scale of world " + std::to_string(world) + ": " + problem;
+    if (!problem.empty()) return "scale by wheels of world " + std::to_string(world) + ": " + problem;
   }
   return "";
 }
@@ -221,7 +221,7 @@ std::string mapProblem(const Camera& camera, const Map& map) {
     const std::string problem = line.id == id ? lineProblem(map, line) : "is kept under another number";
     if (!problem.empty()) return "line " + std::to_string(id) + ": " + problem;
   }
-  return lieProblem(map);
+  return scalesProblem(map);
 }
 
 }  // namespace edgeslam

@@ -16,16 +16,16 @@ namespace {
 
 constexpr std::string_view magic("EDGESLAM MAP\r\n\x1a\n", 16);
 constexpr std::uint32_t version_with_worlds = 2, version_with_readout = 3, version_with_lines = 3,
-                        version_with_lies = 4;
+                        version_with_scales = 4;
 constexpr std::size_t header_size = 28, checksum_size = 4;
 constexpr std::string_view camera_section = "CAMR", keyframe_section = "KEYF", point_section = "PNTS",
-                           line_section = "LINE", lie_section = "LIES";
+                           line_section = "LINE", scale_section = "SCAL";
 
 // Bytes of a record that has nothing of variable length; of a keyframe and an observation in the first version, where
 // they are shortest.
 constexpr std::size_t observation_size = 89, least_keyframe_size = 93, least_point_size = 73, keyframe_id_size = 4;
 constexpr std::size_t straight_edge_size = 96, least_line_size = 85;
-constexpr std::size_t inertial_lie_size = 44, wheel_lie_size = 20;
+constexpr std::size_t alignment_size = 44, wheel_scale_size = 20;
 
 // A few bytes of PNG can become a large image; all together may take so much memory [byte].
 constexpr std::uint64_t largest_images = std::uint64_t{1} << 32;
@@ -87,13 +87,13 @@ void lineFields(Stream& stream, LineFields& line) {
 }
 
 template <typename Stream, typename World, typename AlignmentFields>
-void inertialLieFields(Stream& stream, World& world, AlignmentFields& alignment) {
+void alignmentFields(Stream& stream, World& world, AlignmentFields& alignment) {
   stream(world, alignment.metres_a_unit, alignment.scale_sigma);
   stream(alignment.gravity[0], alignment.gravity[1], alignment.gravity[2]);
 }
 
 template <typename Stream, typename World, typename ScaleFields>
-void wheelLieFields(Stream& stream, World& world, ScaleFields& scale) {
+void wheelScaleFields(Stream& stream, World& world, ScaleFields& scale) {
   stream(world, scale.metres_a_unit, scale.sigma);
 }
 
@@ -154,25 +154,25 @@ void writeLines(ByteWriter& writer, const Map& map) {
 }
 
 // Those that are known, of worlds that have keyframes.
-template <typename Lie>
-std::map<int, Lie> knownLies(const Map& map, const std::map<int, Lie>& lies) {
-  std::map<int, Lie> known;
+template <typename Scale>
+std::map<int, Scale> knownOf(const Map& map, const std::map<int, Scale>& scales) {
+  std::map<int, Scale> known;
   for (const Keyframe& keyframe : map.keyframes) {
-    const auto lie = lies.find(keyframe.world);
-    if (lie != lies.end() && lie->second.is_known) known.insert(*lie);
+    const auto scale = scales.find(keyframe.world);
+    if (scale != scales.end() && scale->second.is_known) known.insert(*scale);
   }
   return known;
 }
 
-void writeLies(ByteWriter& writer, const Map& map) {
-  const std::map<int, InertialAlignment> inertia = knownLies(map, map.inertia);
-  const std::map<int, WheelScale> wheels = knownLies(map, map.wheels);
-  writer.raw(lie_section);
+void writeScales(ByteWriter& writer, const Map& map) {
+  const std::map<int, InertialAlignment> inertia = knownOf(map, map.inertia);
+  const std::map<int, WheelScale> wheels = knownOf(map, map.wheels);
+  writer.raw(scale_section);
   const std::size_t begin = writer.beginLength();
   writer.u64(inertia.size());
-  for (const auto& [world, alignment] : inertia) inertialLieFields(writer, world, alignment);
+  for (const auto& [world, alignment] : inertia) alignmentFields(writer, world, alignment);
   writer.u64(wheels.size());
-  for (const auto& [world, scale] : wheels) wheelLieFields(writer, world, scale);
+  for (const auto& [world, scale] : wheels) wheelScaleFields(writer, world, scale);
   writer.endLength(begin);
 }
 
@@ -295,42 +295,43 @@ void readLines(ByteReader reader, Map& map) {
   reader.expectEnd();
 }
 
-template <typename Lie>
-void insertLie(const ByteReader& reader, int world, const Lie& lie, std::map<int, Lie>& lies) {
-  if (!lies.empty() && world <= lies.rbegin()->first) {
-    reader.fail("how world " + std::to_string(world) + " lies comes after " + std::to_string(lies.rbegin()->first));
+template <typename Scale>
+void insertScale(const ByteReader& reader, int world, const Scale& scale, std::map<int, Scale>& scales) {
+  if (!scales.empty() && world <= scales.rbegin()->first) {
+    reader.fail("the scale of world " + std::to_string(world) + " comes after " +
+                std::to_string(scales.rbegin()->first));
   }
-  lies.emplace_hint(lies.end(), world, lie);
+  scales.emplace_hint(scales.end(), world, scale);
 }
 
 // The unit's biases are those of the run to come. What told the scale is not in the file, so that it is not adjusted
 // again with the whole map.
-void readLies(ByteReader reader, Map& map) {
-  for (std::size_t left = reader.count(inertial_lie_size); left > 0; --left) {
+void readScales(ByteReader reader, Map& map) {
+  for (std::size_t left = reader.count(alignment_size); left > 0; --left) {
     int world = 0;
     InertialAlignment alignment;
-    inertialLieFields(reader, world, alignment);
+    alignmentFields(reader, world, alignment);
     alignment.is_known = true;
     alignment.force_bias_sigma = unknown_force_bias;
     alignment.adjusted_scale_sigma = 0;
-    insertLie(reader, world, alignment, map.inertia);
+    insertScale(reader, world, alignment, map.inertia);
   }
-  for (std::size_t left = reader.count(wheel_lie_size); left > 0; --left) {
+  for (std::size_t left = reader.count(wheel_scale_size); left > 0; --left) {
     int world = 0;
     WheelScale scale;
-    wheelLieFields(reader, world, scale);
+    wheelScaleFields(reader, world, scale);
     scale.is_known = true;
-    insertLie(reader, world, scale, map.wheels);
+    insertScale(reader, world, scale, map.wheels);
   }
   reader.expectEnd();
 }
 
-std::string strayLie(const Map& map) {
+std::string strayScale(const Map& map) {
   const std::vector<int> worlds = worldsOf(map);
-  const auto isThere = [&](const auto& lie) { return std::binary_search(worlds.begin(), worlds.end(), lie.first); };
+  const auto isThere = [&](const auto& scale) { return std::binary_search(worlds.begin(), worlds.end(), scale.first); };
   const bool are_there = std::all_of(map.inertia.begin(), map.inertia.end(), isThere) &&
                          std::all_of(map.wheels.begin(), map.wheels.end(), isThere);
-  return are_there ? "" : "it tells how a world lies that has no keyframes";
+  return are_there ? "" : "it tells the scale of a world that has no keyframes";
 }
 
 // The payload of a file that is whole and of a version that this program reads, which `version` gets.
@@ -372,7 +373,7 @@ std::string encodeMap(const SavedMap& saved) {
   writeList(file, keyframe_section, saved.map.keyframes, [&](const Keyframe& k) { writeKeyframe(file, k); });
   writeList(file, point_section, saved.map.points, [&](const auto& entry) { writePoint(file, entry.second); });
   writeLines(file, saved.map);
-  writeLies(file, saved.map);
+  writeScales(file, saved.map);
   file.endLength(payload);
   file.u32(checksum(file.bytes()));
   return file.take();
@@ -386,10 +387,10 @@ SavedMap decodeMap(std::string_view bytes, const std::string& name) {
   readKeyframes(openSection(payload, keyframe_section), {saved.camera.width, saved.camera.height}, version, saved.map);
   readPoints(openSection(payload, point_section), saved.map);
   if (version >= version_with_lines) readLines(openSection(payload, line_section), saved.map);
-  if (version >= version_with_lies) readLies(openSection(payload, lie_section), saved.map);
+  if (version >= version_with_scales) readScales(openSection(payload, scale_section), saved.map);
   payload.expectEnd();
   std::string problem = mapProblem(saved.camera, saved.map);
-  if (problem.empty()) problem = strayLie(saved.map);
+  if (problem.empty()) problem = strayScale(saved.map);
   if (!problem.empty()) throw InputError(name + ": " + problem);
   return saved;
 }

@@ -6,7 +6,7 @@
 //   "EDGESLAM MAP\r\n\x1a\n"   16 bytes
 //   version                    u32
 //   length of the payload      u64
-//   payload                    the sections CAMR, KEYF, PNTS, LINE, LIES: four letters, u64 length, content
+//   payload                    the sections CAMR, KEYF, PNTS, LINE, SCAL: four letters, u64 length, content
 //   checksum                   u32, CRC-32 (zlib's crc32) of all bytes before it
 //
 //   CAMR   model u32 (0 pinhole with radial-tangential distortion, 1 Kannala-Brandt), width i32, height i32 [px],
@@ -26,7 +26,7 @@
 //   and
 //          the direction in the host 6 f64, placed flag, begin and end f64 [map units], seen in (list of i32,
 //          ascending)
-//   LIES   (not in versions 1 to 3) how worlds lie to the earth, where it is known: list of those of an inertial unit,
+//   SCAL   (not in versions 1 to 3) scales of worlds, where they are known: list of those of an inertial unit,
 //          worlds ascending: world i32, metres a map unit f64, its standard deviation as a share of it f64, gravity x y
 //          z in the world 3 f64 [m/s^2]; list of those of wheels, worlds ascending: world i32, metres a map unit and
 //          its standard deviation f64

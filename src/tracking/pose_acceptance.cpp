@@ -22,7 +22,8 @@ bool isLeap(const FramePose& pose, const AcceptanceContext& context, const Accep
   if (!context.knows_motion || context.followed_share >= options.leap_followed_share) return false;
   const Pose off = context.world_T_predicted.inverse() * pose.result.world_T_camera;
   const double farthest = options.leap_speed * context.seconds;
-  return off.translation.norm() > farthest * context.scene_depth || Eigen::AngleAxisd(off.rotation).angle() > farthest;
+  return off.translation.norm() > farthest * context.scene_depth ||
+         rotationAngle(off.rotation, Eigen::Quaterniond::Identity()) > farthest;
 }
 
 bool isBelieved(const FramePose& pose, const AcceptanceContext& context, const AcceptanceOptions& options) {

@@ -164,7 +164,7 @@ void Tracker::helpStart(TrackedFrame& for_mapping) {
 // Long after the last frame that was located its points are not looked for any more, nor after a leap: a place that
 // looks alike goes on looking alike.
 bool Tracker::locate(Work& work) {
-  if (has_leapt_) return false;
+  if (figures_.is_leap) return false;
   figures_ = {};
   if (!last_.isThere()) return false;
   const bool regains = lost_since_ns_ >= 0;
@@ -173,8 +173,7 @@ bool Tracker::locate(Work& work) {
   const LocationPrior prior{motion_.predict(last_, work.time_ns, view_).world_T_camera, regains, located_in_a_row_ >= 2,
                             preparation_.accuracy(), motion_.whileRowsAreRead(last_, work.time_ns, mapStands())};
   const bool is_located = location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
-  has_leapt_ = figures_.is_leap;
-  if (has_leapt_) frame_.tracks.clear();  // nor is it recovered by them
+  if (figures_.is_leap) frame_.tracks.clear();  // nor is it recovered by them
   return is_located;
 }
 
@@ -496,7 +495,7 @@ void Tracker::beLostSince(std::int64_t time_ns) {
 
 void Tracker::beFound() {
   lost_since_ns_ = -1;
-  has_leapt_ = false;
+  figures_.is_leap = false;
 }
 
 const EdgeMap* Tracker::latestEdges() const {

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 
+#include "geometry/median.h"
 #include "geometry/similarity.h"
 
 namespace edgeslam {
@@ -18,13 +20,6 @@ constexpr double agreeing = 3;          // median distances
 constexpr int alignments = 3;
 constexpr double most_wrong_share = 0.01;
 constexpr double most_growth = 1.5, most_growth_m = 0.01;
-
-// Of an even number, the upper one.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::vector<JudgedPose> ofLargestWorld(const std::vector<JudgedPose>& poses) {
   std::map<int, std::size_t> worlds;
@@ -57,7 +52,7 @@ Similarity laidOnTruth(const std::vector<JudgedPose>& poses) {
     }
     truth_S_world = alignHorn(from, to);
     for (const JudgedPose& pose : poses) distances.push_back(distance(truth_S_world, pose));
-    farthest = agreeing * median(distances);
+    farthest = agreeing * upperMedian(distances);
   }
   return truth_S_world;
 }
@@ -126,11 +121,10 @@ std::vector<std::string> truthProblems(const std::vector<SoakTruth>& passes) {
     if (pass.pass <= third) early[pass.sequence].push_back(pass.error_m);
     if (pass.pass > last - third) late[pass.sequence].push_back(pass.error_m);
   }
-  if (last < 2) return problems;
   for (const auto& [name, errors] : late) {
     const auto before = early.find(name);
     if (before == early.end()) continue;
-    const double from = median(before->second), to = median(errors);
+    const double from = medianOr(0.0, before->second), to = medianOr(0.0, errors);
     if (to <= most_growth * from + most_growth_m) continue;
     std::snprintf(text, sizeof(text), "%.100s: error [m] grew from %.4f to %.4f", name.c_str(), from, to);
     problems.emplace_back(text);

@@ -37,7 +37,7 @@ std::string truthLine(const SoakTruth& truth);
 
 // What is wrong or did not stay as it was, a line each: over 1 % of a sequence's poses are called good and are wrong;
 // or its error, the median of the odd passes, is in the last third of the passes over 1.5 times and 1 cm of that in the
-// first third. Fewer than 3 passes tell nothing of the latter.
+// first third. Fewer than 4 passes tell nothing of the latter.
 std::vector<std::string> truthProblems(const std::vector<SoakTruth>& passes);
 
 }  // namespace edgeslam

@@ -121,17 +121,7 @@ TEST_F(DaemonCommands, ARecordingOfAPartRepeatsThatPart) {
 
   const std::string recording = std::filesystem::directory_iterator(recordings)->path().string();
   EXPECT_EQ(fileContent(recording + "/decisions.txt").find("gap"), std::string::npos);
-  const Outcome repeated = runProgram({"replay", recording, "--output", folder_.path("repeated"), "--drawings", "0"});
-  ASSERT_EQ(repeated.exit_code, 0) << repeated.messages;
-  std::map<std::int64_t, Pose> published;
-  for (const StampedPose& pose : trajectoryOf(robot_->heard().states)) published[pose.time_ns] = pose.world_T_camera;
-  const Trajectory again = readTrajectory(folder_.path("repeated/trajectory_live.txt"));
-  ASSERT_GT(again.size(), 25U);
-  for (const StampedPose& pose : again) {
-    const auto first = published.find(pose.time_ns / 1000 * 1000);
-    ASSERT_NE(first, published.end()) << pose.time_ns;
-    EXPECT_LT((first->second.translation - pose.world_T_camera.translation).norm(), 1e-6) << pose.time_ns;
-  }
+  expectRepeats(recording);
 }
 
 }  // namespace

@@ -169,17 +169,7 @@ TEST_F(CameraTrouble, AMotionJpegCameraIsRecordedAsItCameAndTheRunIsRepeated) {
   for (const RecordedFrame& frame : recording.frames) {
     EXPECT_EQ(sent.count(readArchivedImage(path + "/rgb.tar", *frame.image).bytes), 1U) << frame.index;
   }
-  const Outcome repeated = runProgram({"replay", path, "--output", folder_.path("repeated"), "--drawings", "0"});
-  ASSERT_EQ(repeated.exit_code, 0) << repeated.messages;
-  std::map<std::int64_t, Pose> published;
-  for (const StampedPose& pose : trajectoryOf(robot_->heard().states)) published[pose.time_ns] = pose.world_T_camera;
-  const Trajectory again = readTrajectory(folder_.path("repeated/trajectory_live.txt"));
-  ASSERT_GT(again.size(), 25U);
-  for (const StampedPose& pose : again) {
-    const auto first = published.find(pose.time_ns / 1000 * 1000);
-    ASSERT_NE(first, published.end()) << pose.time_ns;
-    EXPECT_LT((first->second.translation - pose.world_T_camera.translation).norm(), 1e-6) << pose.time_ns;
-  }
+  expectRepeats(path);
 }
 
 // `edgeslam record` asks the disk for all it has once a second (syncfs): in the thread that writes, so that frames

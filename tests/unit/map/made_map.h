@@ -49,7 +49,7 @@ inline SeenEdge madeEdge(LineId line, int width, int height) {
 }
 
 // Keyframes 0, 1, 4 and 9, of which 0 and 4 have images; points 2, 3, 5 and 40000000000. Point 2 is a track without a
-// depth. Line 3, which keyframes 0 and 4 see, is placed, line 8 is not. How the world lies is known, and its scale by
+// depth. Line 3, which keyframes 0 and 4 see, is placed, line 8 is not. Its scale is known by inertia, and by
 // wheels.
 inline SavedMap madeMap(int width, int height) {
   SavedMap saved;

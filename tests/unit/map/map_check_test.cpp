@@ -258,16 +258,19 @@ TEST(MapCheck, StraightEdgesAndLinesKeepToTheRules) {
   });
 }
 
-TEST(MapCheck, HowTheWorldLies) {
-  const auto lie = [](SavedMap& saved) -> InertialAlignment& { return saved.map.inertia.at(0); };
+TEST(MapCheck, ScalesAndGravity) {
+  const auto told = [](SavedMap& saved) -> InertialAlignment& { return saved.map.inertia.at(0); };
   expectRefused({
-      {"how world 0 lies", "must be greater than 0", [&](SavedMap& saved) { lie(saved).metres_a_unit = 0; }},
-      {"how world 0 lies", "must be greater than 0", [&](SavedMap& saved) { lie(saved).metres_a_unit = not_a_number; }},
-      {"how world 0 lies", "deviation", [&](SavedMap& saved) { lie(saved).scale_sigma = -0.1; }},
-      {"how world 0 lies", "gravity", [&](SavedMap& saved) { lie(saved).gravity.setZero(); }},
-      {"how world 0 lies", "gravity", [&](SavedMap& saved) { lie(saved).gravity.x() = not_a_number; }},
-      {"the scale of world 0", "must be", [](SavedMap& saved) { saved.map.wheels.at(0).metres_a_unit = infinity; }},
-      {"the scale of world 0", "deviation", [](SavedMap& saved) { saved.map.wheels.at(0).sigma = not_a_number; }},
+      {"scale and gravity of world 0", "must be greater than 0",
+       [&](SavedMap& saved) { told(saved).metres_a_unit = 0; }},
+      {"scale and gravity of world 0", "must be greater than 0",
+       [&](SavedMap& saved) { told(saved).metres_a_unit = not_a_number; }},
+      {"scale and gravity of world 0", "deviation", [&](SavedMap& saved) { told(saved).scale_sigma = -0.1; }},
+      {"scale and gravity of world 0", "gravity", [&](SavedMap& saved) { told(saved).gravity.setZero(); }},
+      {"scale and gravity of world 0", "gravity", [&](SavedMap& saved) { told(saved).gravity.x() = not_a_number; }},
+      {"scale by wheels of world 0", "must be",
+       [](SavedMap& saved) { saved.map.wheels.at(0).metres_a_unit = infinity; }},
+      {"scale by wheels of world 0", "deviation", [](SavedMap& saved) { saved.map.wheels.at(0).sigma = not_a_number; }},
   });
 }
 

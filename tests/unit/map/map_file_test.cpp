@@ -116,7 +116,7 @@ TEST(MapFile, AnEmptyMapIsAHeaderACameraAndEmptyLists) {
                               "\0\0\0\0\0\0\xF8\x3F"s + two + one + zero + zero + zero + zero + zero +
                               "\0\0\0\0\0\0\0\xC0"s + "\0\0\0\0\0\0\xC0\x3F"s;
   const std::string payload = "CAMR" + littleEndian(92, 8) + content + "KEYF" + littleEndian(8, 8) + zero + "PNTS" +
-                              littleEndian(8, 8) + zero + "LINE" + littleEndian(16, 8) + zero + zero + "LIES" +
+                              littleEndian(8, 8) + zero + "LINE" + littleEndian(16, 8) + zero + zero + "SCAL" +
                               littleEndian(16, 8) + zero + zero;
   const std::string header = "EDGESLAM MAP\r\n\x1a\n" + littleEndian(4, 4) + littleEndian(payload.size(), 8);
   const std::string bytes = encodeMap(saved);
@@ -174,11 +174,11 @@ TEST(MapFile, RecordsStandAsTheHeaderTells) {
   const std::string lines = littleEndian(61, 8) + littleEndian(1, 8) + littleEndian(39, 8) + littleEndian(51, 4) +
                             littleEndian({52, 53, 54, 55, 56, 57}) + '\1' + littleEndian({58, 59}) +
                             littleEndian(1, 8) + littleEndian(60, 4);
-  const std::string lies = littleEndian(1, 8) + littleEndian(3, 4) + littleEndian({62, 63, 64, 65, 66}) +
-                           littleEndian(1, 8) + littleEndian(3, 4) + littleEndian({67, 68});
+  const std::string scales = littleEndian(1, 8) + littleEndian(3, 4) + littleEndian({62, 63, 64, 65, 66}) +
+                             littleEndian(1, 8) + littleEndian(3, 4) + littleEndian({67, 68});
   const std::string sections = "KEYF" + littleEndian(keyframes.size(), 8) + keyframes + "PNTS" +
                                littleEndian(points.size(), 8) + points + "LINE" + littleEndian(lines.size(), 8) +
-                               lines + "LIES" + littleEndian(lies.size(), 8) + lies;
+                               lines + "SCAL" + littleEndian(scales.size(), 8) + scales;
   EXPECT_EQ(bytes.substr(payload_begin + 104, bytes.size() - payload_begin - 104 - checksum_size), sections);
 }
 
@@ -197,13 +197,13 @@ TEST(MapFile, BiasesAreThoseOfTheRunToCome) {
   EXPECT_EQ(read.force_bias_sigma, unknown_force_bias);
 }
 
-TEST(MapFile, AWorldThatLiesSomehowHasKeyframes) {
-  const std::string lies = "LIES" + littleEndian(16 + 44, 8) + littleEndian(1, 8);
+TEST(MapFile, AWorldWhoseScaleIsToldHasKeyframes) {
+  const std::string scales = "SCAL" + littleEndian(16 + 44, 8) + littleEndian(1, 8);
   std::string bytes = encodeMap(mapOfOneKeyframe());
   bytes.erase(bytes.size() - checksum_size - 28, 28);
   bytes.insert(bytes.size() - checksum_size,
-               lies + littleEndian(4, 4) + littleEndian({1, 0.1, 0, 0, standard_gravity}) + littleEndian(0, 8));
-  EXPECT_EQ(refusal(sealed(bytes)), "hall.map: it tells how a world lies that has no keyframes");
+               scales + littleEndian(4, 4) + littleEndian({1, 0.1, 0, 0, standard_gravity}) + littleEndian(0, 8));
+  EXPECT_EQ(refusal(sealed(bytes)), "hall.map: it tells the scale of a world that has no keyframes");
 }
 
 TEST(MapFile, EveryChangedBitIsTold) {
@@ -265,10 +265,10 @@ void cut(std::string& bytes, const std::string& section, std::size_t place, std:
   bytes.erase(length + 8 + place, size);
 }
 
-// Which did not tell how worlds lie.
+// Which told no scales.
 std::string inTheThirdVersion(std::string bytes) {
-  constexpr std::size_t no_lies = 4 + 8 + 16;
-  bytes.erase(bytes.size() - checksum_size - no_lies, no_lies);
+  constexpr std::size_t no_scales = 4 + 8 + 16;
+  bytes.erase(bytes.size() - checksum_size - no_scales, no_scales);
   overwrite(bytes, 16, littleEndian(3, 4));
   return sealed(bytes);
 }
