@@ -37,7 +37,7 @@ struct LocationOptions {
 // What is known before a frame is located.
 struct LocationPrior {
   Pose world_T_predicted;         // from motion alone
-  bool regains = false;           // the frame before was blurred or lost
+  bool regains = false;           // the frame before was blurred, lost, or found again by others
   bool knows_motion = false;      // it and the one before that were located in this map
   const PointAccuracy& accuracy;  // of what is measured in this frame
   RowMotion motion;               // tells how the camera moves while its rows are read

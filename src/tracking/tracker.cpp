@@ -29,6 +29,12 @@ LocationOptions locationOptions(const TrackerOptions& options) {
   return location;
 }
 
+int countInMap(const MapView& view, const std::vector<Track>& tracks) {
+  AscendingPoints points(view);
+  return static_cast<int>(std::count_if(tracks.begin(), tracks.end(),
+                                        [&](const Track& track) { return points.find(track.id) != nullptr; }));
+}
+
 int pyramidLevels(const TrackerOptions& options) {
   return std::max(options.location.flow.levels, least_pyramid_levels);
 }
@@ -167,9 +173,10 @@ bool Tracker::locate(Work& work) {
   if (figures_.is_leap) return false;
   figures_ = {};
   if (!last_.isThere()) return false;
-  const bool regains = lost_since_ns_ >= 0;
-  if (regains && static_cast<double>(work.time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds) return false;
+  const bool is_lost = lost_since_ns_ >= 0;
+  if (is_lost && static_cast<double>(work.time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds) return false;
   scratch_.release();
+  const bool regains = is_lost || last_was_found_again_;
   const LocationPrior prior{motion_.predict(last_, work.time_ns, view_).world_T_camera, regains, located_in_a_row_ >= 2,
                             preparation_.accuracy(), motion_.whileRowsAreRead(last_, work.time_ns, mapStands())};
   const bool is_located = location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
@@ -421,6 +428,7 @@ void Tracker::remember() {
   if (is_lost_) preparation_.forgetSharpness();
   is_lost_ = false;
   beFound();
+  last_was_found_again_ = false;
   located_in_a_row_ = mapStands() ? located_in_a_row_ + 1 : 0;
   const double sigma = std::sqrt(withSharedNoise(frame_.covariance).topLeftCorner<3, 3>().trace() / 3);
   motion_.observe(last_, frame_, sigma, view_);
@@ -535,8 +543,9 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   last_.world_T_camera = world_T_camera;
   last_.twist.setZero();
   last_.covariance = covariance;
-  last_.inlier_count = 0;
   std::swap(view_, view);
+  last_.inlier_count = countInMap(view_, last_.tracks);
+  last_was_found_again_ = true;
   takeCamera(view_.found);
   last_.is_by_wheels = false;
   motion_.goOnFrom(last_);

@@ -178,6 +178,7 @@ class Tracker {
   bool frame_is_lost_ = false;
   bool is_lost_ = false;                        // the last frame was, and not merely blurred
   std::int64_t lost_since_ns_ = -1;             // or blurred since; -1: neither
+  bool last_was_found_again_ = false;           // by others, in a frame that may be long past
   int located_in_a_row_ = 0;                    // frames, in a map that stands
   Matrix6d map_covariance_ = Matrix6d::Zero();  // where the last pose was measured
   SpareStart spare_;                            // while the map does not stand

@@ -376,6 +376,28 @@ TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
   }
 }
 
+// Of the frame at `i` only a band in the middle, a fifth of its height; above and below it another place.
+cv::Mat mostlyElsewhere(int i) {
+  cv::Mat image = elsewhere().clone();
+  const cv::Rect band(0, 2 * camera.height / 5, camera.width, camera.height / 5);
+  imageAt(i)(band).copyTo(image(band));
+  return image;
+}
+
+// The answer may come long after the frame that was looked for. Where few of the points that were found are seen again,
+// these may agree with a wrong pose, on which the map would grow.
+TEST(Tracker, ResumedItBelievesNoPoseThatFewOfThePointsFoundAgreeWith) {
+  Tracked run(2);
+  ASSERT_EQ(track(run.tracker, 3, 3 * interval_ns, elsewhere()).state, TrackingState::lost);
+  const std::int64_t later_ns = 900'000'000;
+  ASSERT_EQ(track(run.tracker, 90, later_ns, imageAt(8)).state, TrackingState::lost);
+  keepLostFrame(run.tracker);
+  MapView view = moved(run.view, Pose());
+  run.tracker.resume(view, path(8), 1e-6 * Matrix6d::Identity(), foundIn(view, path(8), Pose()));
+  const Outcome few = track(run.tracker, 91, later_ns + interval_ns, mostlyElsewhere(9));
+  EXPECT_TRUE(few.state == TrackingState::lost || few.position_is_held) << few.reason;
+}
+
 // The same place as another world, whose keyframes have numbers from 60 on.
 MapView ofAnotherWorld(MapView view, int world) {
   view.world = world;
