@@ -42,6 +42,12 @@ Revisit revisit() {
   return made;
 }
 
+void reuse(const Revisit& made, ReuseOf which, std::size_t most, std::vector<Track>& tracks,
+           const MapReuseOptions& options = {}) {
+  MapReuse(options).addTracks(which, made.camera, made.view, *made.images, made.edges, made.world_T_camera, most,
+                              tracks);
+}
+
 double errorOf(const Revisit& made, const Track& track) {
   const Eigen::Vector3d position = worldPosition(made.view, *findPoint(made.view, track.id));
   const Eigen::Vector2d projected = project(made.camera, made.world_T_camera.inverse() * position);
@@ -52,7 +58,7 @@ TEST(MapReuse, FindsWhatCameIntoViewAgainWhereItIs) {
   const Revisit made = revisit();
   ASSERT_GT(made.view.points.size(), 100u);
   std::vector<Track> tracks;
-  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, {}, tracks);
+  reuse(made, ReuseOf::all, 1000, tracks);
   EXPECT_GT(tracks.size(), made.view.points.size() / 2);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     EXPECT_LT(errorOf(made, tracks[i]), 0.5);
@@ -65,9 +71,9 @@ TEST(MapReuse, FindsWhatCameIntoViewAgainWhereItIs) {
 TEST(MapReuse, WhatIsFollowedIsNotTakenTwiceAndTheNumberIsKept) {
   const Revisit made = revisit();
   std::vector<Track> tracks;
-  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 40, {}, tracks);
+  reuse(made, ReuseOf::all, 40, tracks);
   ASSERT_EQ(tracks.size(), 40u);
-  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 60, {}, tracks);
+  reuse(made, ReuseOf::all, 60, tracks);
   ASSERT_EQ(tracks.size(), 60u);
   for (std::size_t i = 1; i < tracks.size(); ++i) EXPECT_LT(tracks[i - 1].id, tracks[i].id);
 }
@@ -77,8 +83,59 @@ TEST(MapReuse, NothingIsFoundInAnotherPlace) {
   made.images = imagesOf(cv::Mat(made.camera.height, made.camera.width, CV_8U, cv::Scalar(100)), 1);
   made.edges = detectEdges(made.images->pyramid.levels[0], EdgeOptions());
   std::vector<Track> tracks;
-  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, {}, tracks);
+  reuse(made, ReuseOf::all, 1000, tracks);
   EXPECT_TRUE(tracks.empty());
+}
+
+std::vector<PointId> idsOf(const std::vector<Track>& tracks) {
+  std::vector<PointId> ids;
+  for (const Track& track : tracks) ids.push_back(track.id);
+  return ids;
+}
+
+// As one call finds them in one frame.
+std::vector<PointId> foundIn(const Revisit& made, MapReuse& map_reuse, ReuseOf which, std::int64_t frame_index) {
+  const auto images = imagesOf(made.images->pyramid.levels[0], frame_index);
+  std::vector<Track> tracks;
+  map_reuse.addTracks(which, made.camera, made.view, *images, made.edges, made.world_T_camera, 1000, tracks);
+  return idsOf(tracks);
+}
+
+TEST(MapReuse, InTurnEachPointIsLookedForOnceInAnInterval) {
+  Revisit made = revisit();
+  MapReuseOptions options;
+  options.interval = 4;
+  options.spacing = 0;  // or neighbours would hide each other
+  MapReuse in_turn(options), at_once(options);
+  std::vector<PointId> found;
+  std::size_t most = 0;
+  for (int frame = 0; frame < options.interval; ++frame) {
+    const std::vector<PointId> now = foundIn(made, in_turn, ReuseOf::turn, 10 + frame);
+    most = std::max(most, now.size());
+    found.insert(found.end(), now.begin(), now.end());
+  }
+  std::sort(found.begin(), found.end());
+  const std::vector<PointId> all = foundIn(made, at_once, ReuseOf::all, 10);
+  ASSERT_GT(all.size(), 100U);
+  EXPECT_EQ(found, all);
+  EXPECT_LT(most, all.size() / 2);
+}
+
+TEST(MapReuse, WhatWasMissedIsWhatWasNotLookedForWithinTheInterval) {
+  Revisit made = revisit();
+  MapReuseOptions options;
+  options.interval = 4;
+  options.spacing = 0;
+  MapReuse map_reuse(options);
+  const std::vector<PointId> turn = foundIn(made, map_reuse, ReuseOf::turn, 10);
+  const std::vector<PointId> missed = foundIn(made, map_reuse, ReuseOf::missed, 11);
+  std::vector<PointId> together;
+  std::merge(turn.begin(), turn.end(), missed.begin(), missed.end(), std::back_inserter(together));
+  MapReuse at_once(options);
+  EXPECT_EQ(together, foundIn(made, at_once, ReuseOf::all, 10)) << "none twice, none left out";
+  EXPECT_TRUE(foundIn(made, map_reuse, ReuseOf::missed, 13).empty()) << "all were looked for within the interval";
+  EXPECT_EQ(foundIn(made, map_reuse, ReuseOf::missed, 14), turn) << "four frames after their turn";
+  EXPECT_EQ(foundIn(made, map_reuse, ReuseOf::missed, 100), foundIn(made, at_once, ReuseOf::all, 100));
 }
 
 TEST(MapReuse, CanBeSwitchedOff) {
@@ -86,7 +143,7 @@ TEST(MapReuse, CanBeSwitchedOff) {
   MapReuseOptions off;
   off.enabled = false;
   std::vector<Track> tracks;
-  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, off, tracks);
+  reuse(made, ReuseOf::all, 1000, tracks, off);
   EXPECT_TRUE(tracks.empty());
 }
 
