@@ -134,7 +134,10 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   const auto in_view = frame.position_is_held ? 0 : static_cast<double>(pose->track_of_observation.size());
   frame.outlier_share = in_view > 0 ? 1 - frame.inlier_count / in_view : 0;
   countOutliers(*pose, view.initialised, frame.tracks);
-  finishTracks(view, prior.accuracy, frame);
+  if (!frame.position_is_held) {
+    lockAlongEdges(camera_, view, {frame.world_T_camera, frame.twist}, options_.edge_lock, frame.tracks);
+  }
+  for (Track& track : frame.tracks) updateAccuracy(to.pyramid.levels[0], prior.accuracy, track);
   clock.finished(Stage::pose);
   return true;
 }
@@ -143,22 +146,20 @@ void FrameLocation::followChanged(const FollowedFrame& last, const std::vector<P
                                   const MapView& view, const PointAccuracy& accuracy, FollowedFrame& frame,
                                   std::vector<Track>& changed, std::pmr::memory_resource& memory) const {
   divideTracks(last.tracks, before, frame.tracks, changed);
+  const std::size_t first_changed = frame.tracks.size();
   const FrameImages& from = *last.images;
   const FrameImages& to = *frame.images;
   const AlignmentPoints points = placeTracks(camera_, changed, view, last.world_T_camera, frame.scene_depth, &memory);
   const Pixels predictions = predictPixels(camera_, points, last.world_T_camera, frame.world_T_camera, &memory);
   const FlowMatches matches = followPoints(from, to, changed, predictions, options_.flow, &memory, hidden_from_flow_);
   filterTracks(from, to, *frame.edges, changed, matches, options_.flow, frame.tracks, &memory);
+  for (std::size_t i = first_changed; i < frame.tracks.size(); ++i) {
+    updateAccuracy(to.pyramid.levels[0], accuracy, frame.tracks[i]);
+  }
   std::sort(frame.tracks.begin(), frame.tracks.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
-  finishTracks(view, accuracy, frame);
-}
-
-// Once its pose is known.
-void FrameLocation::finishTracks(const MapView& view, const PointAccuracy& accuracy, FollowedFrame& frame) const {
   if (!frame.position_is_held) {
     lockAlongEdges(camera_, view, {frame.world_T_camera, frame.twist}, options_.edge_lock, frame.tracks);
   }
-  for (Track& track : frame.tracks) updateAccuracy(frame.images->pyramid.levels[0], accuracy, track);
 }
 
 // P16, once more after the points were refined against their keyframes. Nothing where the map does not tell the pose.

@@ -91,7 +91,6 @@ class FrameLocation {
   std::optional<FramePose> poseInMap(const MapView& view, const LocationPrior& prior, const Pose& world_T_predicted,
                                      const AcceptanceContext& context, FollowedFrame& frame, LocationFigures& figures,
                                      std::pmr::memory_resource& memory, StageClock& clock) const;
-  void finishTracks(const MapView& view, const PointAccuracy& accuracy, FollowedFrame& frame) const;
   void countOutliers(const FramePose& pose, bool map_stands, std::vector<Track>& tracks) const;
 
   Camera camera_;
