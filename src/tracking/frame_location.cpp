@@ -19,38 +19,6 @@ void append(double share, std::string& text) {
   text += static_cast<char>('0' + thousandths % 10);
 }
 
-// The track, followed into the next frame, is compared with its patch in the keyframe from now on.
-void goOnFromKeyframe(const Track& in_keyframe, Track& followed) {
-  followed.keyframe = in_keyframe.keyframe;
-  followed.keyframe_images = in_keyframe.keyframe_images;
-  followed.keyframe_pixel = in_keyframe.keyframe_pixel;
-  followed.last_keyframe_pixel = in_keyframe.last_keyframe_pixel;
-  followed.straight_edge = in_keyframe.straight_edge;
-}
-
-// Of the keyframe's tracks those that are new or were moved since `before` are `changed`; of the `followed` ones those
-// that are neither stay, and go on from the keyframe. All ascend by id.
-void divideTracks(const std::vector<Track>& in_keyframe, const std::vector<PlacedTrack>& before,
-                  std::vector<Track>& followed, std::vector<Track>& changed) {
-  changed.clear();
-  auto placed = before.begin();
-  auto next = followed.begin(), kept = followed.begin();
-  for (const Track& track : in_keyframe) {
-    while (placed != before.end() && placed->id < track.id) ++placed;
-    if (placed == before.end() || placed->id != track.id || placed->pixel != track.pixel) {
-      changed.push_back(track);
-      continue;
-    }
-    while (next != followed.end() && next->id < track.id) ++next;
-    if (next == followed.end() || next->id != track.id) continue;
-    goOnFromKeyframe(track, *next);
-    if (kept != next) *kept = std::move(*next);
-    ++kept;
-    ++next;
-  }
-  followed.erase(kept, followed.end());
-}
-
 }  // namespace
 
 // Piece by piece: on the way from a frame to its pose there is no allocation.
@@ -105,7 +73,6 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   const Pixels predictions = predictPixels(camera_, points, last.world_T_camera, predicted, &memory);
   const FlowMatches matches =
       followPoints(from, to, last.tracks, predictions, options_.flow, &memory, hidden_from_flow_);
-  frame.tracks.clear();
   filterTracks(from, to, *frame.edges, last.tracks, matches, options_.flow, frame.tracks, &memory);
   clock.finished(Stage::flow);
 
@@ -140,26 +107,6 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   for (Track& track : frame.tracks) updateAccuracy(to.pyramid.levels[0], prior.accuracy, track);
   clock.finished(Stage::pose);
   return true;
-}
-
-void FrameLocation::followChanged(const FollowedFrame& last, const std::vector<PlacedTrack>& before,
-                                  const MapView& view, const PointAccuracy& accuracy, FollowedFrame& frame,
-                                  std::vector<Track>& changed, std::pmr::memory_resource& memory) const {
-  divideTracks(last.tracks, before, frame.tracks, changed);
-  const std::size_t first_changed = frame.tracks.size();
-  const FrameImages& from = *last.images;
-  const FrameImages& to = *frame.images;
-  const AlignmentPoints points = placeTracks(camera_, changed, view, last.world_T_camera, frame.scene_depth, &memory);
-  const Pixels predictions = predictPixels(camera_, points, last.world_T_camera, frame.world_T_camera, &memory);
-  const FlowMatches matches = followPoints(from, to, changed, predictions, options_.flow, &memory, hidden_from_flow_);
-  filterTracks(from, to, *frame.edges, changed, matches, options_.flow, frame.tracks, &memory);
-  for (std::size_t i = first_changed; i < frame.tracks.size(); ++i) {
-    updateAccuracy(to.pyramid.levels[0], accuracy, frame.tracks[i]);
-  }
-  std::sort(frame.tracks.begin(), frame.tracks.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
-  if (!frame.position_is_held) {
-    lockAlongEdges(camera_, view, {frame.world_T_camera, frame.twist}, options_.edge_lock, frame.tracks);
-  }
 }
 
 // P16, once more after the points were refined against their keyframes. Nothing where the map does not tell the pose.

@@ -59,12 +59,6 @@ struct LocationFigures {
 // Why no pose was found that can be believed, in words, in place of what is in `reason`.
 void describe(const LocationFigures& figures, std::string& reason);
 
-// Where a track was in a frame.
-struct PlacedTrack {
-  PointId id = 0;
-  Eigen::Vector2f pixel;
-};
-
 class FrameLocation {
  public:
   FrameLocation(const Camera& camera, const LocationOptions& options);
@@ -77,13 +71,6 @@ class FrameLocation {
   // way.
   bool locate(const FollowedFrame& last, const MapView& view, const LocationPrior& prior, FollowedFrame& frame,
               LocationFigures& figures, std::pmr::memory_resource& memory, StageClock& clock) const;
-
-  // `last` became a keyframe after `frame` was located from it: its tracks that are new since `before`, or were moved,
-  // are followed into `frame` as well, from its pose; the others go on from their patches in the keyframe. `changed`:
-  // memory.
-  void followChanged(const FollowedFrame& last, const std::vector<PlacedTrack>& before, const MapView& view,
-                     const PointAccuracy& accuracy, FollowedFrame& frame, std::vector<Track>& changed,
-                     std::pmr::memory_resource& memory) const;
 
  private:
   Pose alignImages(const FollowedFrame& last, const AlignmentPoints& points, const Pose& world_T_predicted,

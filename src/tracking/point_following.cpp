@@ -131,9 +131,8 @@ void filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap&
                   std::vector<Track>& kept, std::pmr::memory_resource* memory) {
   const cv::Mat& image = to.pyramid.levels[0];
   const auto border = static_cast<float>(flowReach(options));
-  Occupancy occupancy(image.cols, image.rows, static_cast<float>(options.redundancy), kept.size() + tracks.size(),
-                      memory);
-  for (const Track& track : kept) occupancy.take(track.pixel);
+  Occupancy occupancy(image.cols, image.rows, static_cast<float>(options.redundancy), tracks.size(), memory);
+  kept.clear();
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const Track& track = tracks[i];
     const FlowMatch& match = matches[i];

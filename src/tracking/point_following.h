@@ -46,7 +46,7 @@ FlowMatches followPoints(const FrameImages& from, const FrameImages& to, const s
                          const HiddenLevels& hidden = {});
 
 // P6: keeps the tracks that were found, agree there and back across their edge, lie on an edge of `edges`, and are not
-// too near to an older one, with their new pixels, beside what is in `kept` already.
+// too near to an older one, with their new pixels, in place of what is in `kept`.
 void filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap& edges,
                   const std::vector<Track>& tracks, const FlowMatches& matches, const FlowOptions& options,
                   std::vector<Track>& kept, std::pmr::memory_resource* memory = std::pmr::get_default_resource());

@@ -100,8 +100,6 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
     frame->straight_edges.reserve(most_tracks_);
   }
   reserveForTracking(view_);
-  placed_.reserve(most_found_again);
-  changed_.reserve(most_found_again);
   lost_reason_.reserve(longest_reason);
 }
 
@@ -134,14 +132,14 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   if (isToBeginWorld(time_ns)) beginWorld();
   if (!mapStands() && !last_.isThere()) return startMap("first frame of the map", work);
 
-  const bool located = place(work);  // P5, P6, P16
+  bool located = place(work);  // P5, P6, P16
   measureNoise(work.result);
   if (!mapStands() && (!located || (tooFewAreLeft() && !goOnFromSpare()))) {
     return startMap("starting anew: too few of the first frame's points are left", work);  // P13
   }
   bool is_told = false;
   if (is_sharp && mapStands() && located && !mapping_busy) {
-    is_told = options_.map_is_frozen ? isToSeeElsewhere(for_mapping) : selectKeyframe(work);  // P8 to P12
+    is_told = options_.map_is_frozen ? isToSeeElsewhere(for_mapping) : selectKeyframe(located, work);  // P8 to P12
   }
   if (!located) {
     lose(work);
@@ -311,8 +309,8 @@ bool Tracker::startMap(const char* reason, Work& work) {
   return true;
 }
 
-// True where a frame became one. Where that was the frame before, its fresh points are followed into this one.
-bool Tracker::selectKeyframe(Work& work) {
+// True where a frame became one. Where that was the frame before, this one is located anew, from its fresh points.
+bool Tracker::selectKeyframe(bool& located, Work& work) {
   const KeyframeDecision decision = keyframes_.judge(view_, frame_);
   switch (decision.choice) {
     case KeyframeChoice::none:
@@ -321,7 +319,8 @@ bool Tracker::selectKeyframe(Work& work) {
       becomeKeyframe(frame_, decision.reason, work);
       return true;
     case KeyframeChoice::previous_frame:
-      becomeKeyframeLate(decision.reason, work);
+      becomeKeyframe(last_, decision.reason, work);
+      located = place(work);
       return true;
   }
   return false;
@@ -344,16 +343,6 @@ void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& wor
   // Until mapping answers, the keyframe stands where tracking saw it.
   view_.keyframes.push_back({id, frame.world_T_camera, nullptr, Matrix7d::Zero(), frame.twist});
   work.clock.finished(Stage::choice_of_points);
-}
-
-// The frame before, after this one was located from it.
-void Tracker::becomeKeyframeLate(const char* reason, Work& work) {
-  placed_.clear();
-  for (const Track& track : last_.tracks) placed_.push_back({track.id, track.pixel});
-  becomeKeyframe(last_, reason, work);
-  scratch_.release();
-  location_.followChanged(last_, placed_, view_, preparation_.accuracy(), frame_, changed_, scratch_);
-  work.clock.finished(Stage::flow);
 }
 
 // In a frozen map: true where the camera came nearer to another keyframe than to that which the view is around.

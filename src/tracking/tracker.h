@@ -135,10 +135,9 @@ class Tracker {
   bool goOnFromSpare();
   bool isToKeepSpare() const;
   void helpStart(TrackedFrame& for_mapping);
-  bool selectKeyframe(Work& work);
+  bool selectKeyframe(bool& located, Work& work);
   void keepEdgesOfStart(FollowedFrame& frame);
   void becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work);
-  void becomeKeyframeLate(const char* reason, Work& work);
   bool isToSeeElsewhere(TrackedFrame& for_mapping);
   bool isReuseDue() const;
   void reuseMapInTurn(Work& work);
@@ -174,8 +173,6 @@ class Tracker {
   FollowedFrame frame_;  // the current one
   FollowedFrame last_;   // the last frame that was located
   LocationFigures figures_;
-  std::vector<PlacedTrack> placed_;  // in a frame before it became a keyframe late
-  std::vector<Track> changed_;       // as it became one
   std::string lost_reason_;
   FollowedFrame kept_;           // a lost frame that others look for
   KeyframeId kept_number_ = -1;  // that it gets if it is recovered as a keyframe
