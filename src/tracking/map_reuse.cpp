@@ -43,34 +43,33 @@ void compareWithMap(const MapView& view, std::vector<Track>& tracks) {
 
 MapReuse::MapReuse(const MapReuseOptions& options) : options_(options) { searches_.reserve(usual_points_in_view); }
 
-bool MapReuse::isLookedFor(ReuseOf which, PointId point, std::int64_t frame_index) const {
+bool MapReuse::isLookedFor(ReuseOf which, PointId point) const {
   switch (which) {
     case ReuseOf::all:
       return true;
     case ReuseOf::turn:
-      return (point + frame_index) % options_.interval == 0;
+      return (point + frame_) % options_.interval == 0;
     case ReuseOf::missed:
       break;
   }
   const auto latest = std::lower_bound(searches_.begin(), searches_.end(), point,
                                        [](const Search& search, PointId wanted) { return search.point < wanted; });
-  return latest == searches_.end() || latest->point != point || frame_index - latest->frame_index >= options_.interval;
+  return latest == searches_.end() || latest->point != point || frame_ - latest->frame >= options_.interval;
 }
 
-void MapReuse::remember(const SearchPoints& points, const VisiblePoints& visible, std::int64_t frame_index,
-                        std::pmr::memory_resource* memory) {
+void MapReuse::remember(const SearchPoints& points, const VisiblePoints& visible, std::pmr::memory_resource* memory) {
   std::pmr::vector<Search> merged(memory);
   merged.reserve(searches_.size() + visible.size());
   auto before = searches_.begin();
   const auto takeBefore = [&] {
-    if (frame_index - before->frame_index < options_.interval) merged.push_back(*before);
+    if (frame_ - before->frame < options_.interval) merged.push_back(*before);
     ++before;
   };
   for (const VisiblePoint& now : visible) {
     const PointId id = points[now.index].id;
     while (before != searches_.end() && before->point < id) takeBefore();
     if (before != searches_.end() && before->point == id) ++before;
-    merged.push_back({id, frame_index});
+    merged.push_back({id, frame_});
   }
   while (before != searches_.end()) takeBefore();
   searches_.assign(merged.begin(), merged.end());
@@ -79,6 +78,7 @@ void MapReuse::remember(const SearchPoints& points, const VisiblePoints& visible
 void MapReuse::addTracks(ReuseOf which, const Camera& camera, const MapView& view, const FrameImages& images,
                          const EdgeMap& edges, const MovingCamera& moving, std::size_t most, std::vector<Track>& tracks,
                          std::pmr::memory_resource* memory) {
+  if (which == ReuseOf::turn) ++frame_;
   if (!options_.enabled || tracks.size() >= most) return;
   SearchPoints points(memory);
   points.reserve(view.points.size());
@@ -86,11 +86,11 @@ void MapReuse::addTracks(ReuseOf which, const Camera& camera, const MapView& vie
   for (const ViewPoint& point : view.points) {
     while (t < tracks.size() && tracks[t].id < point.id) ++t;
     const bool is_followed = t < tracks.size() && tracks[t].id == point.id;
-    if (is_followed || point.source < 0 || !isLookedFor(which, point.id, images.frame_index)) continue;
+    if (is_followed || point.source < 0 || !isLookedFor(which, point.id)) continue;
     points.push_back(searchPointOf(view, point));
   }
   const VisiblePoints visible = visiblePoints(camera, points, moving, options_.search, memory);
-  remember(points, visible, images.frame_index, memory);
+  remember(points, visible, memory);
   const Pose camera_T_world = moving.world_T_camera.inverse();
   const auto by_id = [](const Track& a, const Track& b) { return a.id < b.id; };
   for (const FoundPoint& found : findVisiblePoints(points, visible, images, edges, options_.search, memory)) {

@@ -23,30 +23,33 @@ struct MapReuseOptions {
 enum class ReuseOf {
   all,
   turn,   // those whose turn it is in this frame: the work is spread over the interval
-  missed  // those that were not looked for within the interval: they just came into view, or have moved since
+  missed  // those that were not looked for within the interval: they just came into view
 };
 
 class MapReuse {
  public:
   explicit MapReuse(const MapReuseOptions& options);
 
-  // Appends the points found to the tracks, which stay sorted by id; at most until there are `most` tracks. Frames come
-  // in their order.
+  // Appends the points found to the tracks, which stay sorted by id; at most until there are `most` tracks. With each
+  // call for a turn another frame has come.
   void addTracks(ReuseOf which, const Camera& camera, const MapView& view, const FrameImages& images,
                  const EdgeMap& edges, const MovingCamera& moving, std::size_t most, std::vector<Track>& tracks,
                  std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
+  // The camera may be anywhere now.
+  void forget() { searches_.clear(); }
+
  private:
   struct Search {
     PointId point = 0;
-    std::int64_t frame_index = 0;
+    std::int64_t frame = 0;
   };
 
-  bool isLookedFor(ReuseOf which, PointId point, std::int64_t frame_index) const;
-  void remember(const SearchPoints& points, const VisiblePoints& visible, std::int64_t frame_index,
-                std::pmr::memory_resource* memory);
+  bool isLookedFor(ReuseOf which, PointId point) const;
+  void remember(const SearchPoints& points, const VisiblePoints& visible, std::pmr::memory_resource* memory);
 
   MapReuseOptions options_;
+  std::int64_t frame_ = 0;        // counted here: frames that the computer is too slow for have no turn
   std::vector<Search> searches_;  // the latest of each point, within the interval; ascending by point
 };
 

@@ -537,6 +537,7 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   std::swap(last_, kept_);
   kept_.forget();
   spare_.forget();
+  map_reuse_.forget();
   if (!points.empty()) last_.tracks.clear();
   for (const FoundAgain& found : points) last_.tracks.push_back(trackOf(found));
   if (options_.map_is_frozen) compareWithMap(view, last_.tracks);

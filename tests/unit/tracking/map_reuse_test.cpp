@@ -93,49 +93,63 @@ std::vector<PointId> idsOf(const std::vector<Track>& tracks) {
   return ids;
 }
 
-// As one call finds them in one frame.
-std::vector<PointId> foundIn(const Revisit& made, MapReuse& map_reuse, ReuseOf which, std::int64_t frame_index) {
-  const auto images = imagesOf(made.images->pyramid.levels[0], frame_index);
+// As one call finds them.
+std::vector<PointId> foundIn(const Revisit& made, MapReuse& map_reuse, ReuseOf which) {
   std::vector<Track> tracks;
-  map_reuse.addTracks(which, made.camera, made.view, *images, made.edges, made.world_T_camera, 1000, tracks);
+  map_reuse.addTracks(which, made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, tracks);
   return idsOf(tracks);
 }
 
-TEST(MapReuse, InTurnEachPointIsLookedForOnceInAnInterval) {
-  Revisit made = revisit();
+MapReuseOptions everyFourFrames() {
   MapReuseOptions options;
   options.interval = 4;
   options.spacing = 0;  // or neighbours would hide each other
-  MapReuse in_turn(options), at_once(options);
+  return options;
+}
+
+TEST(MapReuse, InTurnEachPointIsLookedForOnceInAnInterval) {
+  const Revisit made = revisit();
+  MapReuse map_reuse(everyFourFrames());
   std::vector<PointId> found;
   std::size_t most = 0;
-  for (int frame = 0; frame < options.interval; ++frame) {
-    const std::vector<PointId> now = foundIn(made, in_turn, ReuseOf::turn, 10 + frame);
+  for (int frame = 0; frame < 4; ++frame) {
+    const std::vector<PointId> now = foundIn(made, map_reuse, ReuseOf::turn);
     most = std::max(most, now.size());
     found.insert(found.end(), now.begin(), now.end());
   }
   std::sort(found.begin(), found.end());
-  const std::vector<PointId> all = foundIn(made, at_once, ReuseOf::all, 10);
+  const std::vector<PointId> all = foundIn(made, map_reuse, ReuseOf::all);
   ASSERT_GT(all.size(), 100U);
   EXPECT_EQ(found, all);
   EXPECT_LT(most, all.size() / 2);
 }
 
 TEST(MapReuse, WhatWasMissedIsWhatWasNotLookedForWithinTheInterval) {
-  Revisit made = revisit();
-  MapReuseOptions options;
-  options.interval = 4;
-  options.spacing = 0;
-  MapReuse map_reuse(options);
-  const std::vector<PointId> turn = foundIn(made, map_reuse, ReuseOf::turn, 10);
-  const std::vector<PointId> missed = foundIn(made, map_reuse, ReuseOf::missed, 11);
+  const Revisit made = revisit();
+  MapReuse map_reuse(everyFourFrames());
+  const std::vector<PointId> turn = foundIn(made, map_reuse, ReuseOf::turn);
+  const std::vector<PointId> missed = foundIn(made, map_reuse, ReuseOf::missed);
   std::vector<PointId> together;
   std::merge(turn.begin(), turn.end(), missed.begin(), missed.end(), std::back_inserter(together));
-  MapReuse at_once(options);
-  EXPECT_EQ(together, foundIn(made, at_once, ReuseOf::all, 10)) << "none twice, none left out";
-  EXPECT_TRUE(foundIn(made, map_reuse, ReuseOf::missed, 13).empty()) << "all were looked for within the interval";
-  EXPECT_EQ(foundIn(made, map_reuse, ReuseOf::missed, 14), turn) << "four frames after their turn";
-  EXPECT_EQ(foundIn(made, map_reuse, ReuseOf::missed, 100), foundIn(made, at_once, ReuseOf::all, 100));
+  MapReuse at_once(everyFourFrames());
+  const std::vector<PointId> all = foundIn(made, at_once, ReuseOf::all);
+  EXPECT_EQ(together, all) << "none twice, none left out";
+  EXPECT_TRUE(foundIn(made, map_reuse, ReuseOf::missed).empty());
+  map_reuse.forget();
+  EXPECT_EQ(foundIn(made, map_reuse, ReuseOf::missed), all);
+}
+
+// A map that shows nothing of them for a while, as when the camera turns away and back.
+TEST(MapReuse, AfterTheIntervalPointsAreMissedAgain) {
+  const Revisit made = revisit();
+  Revisit away = made;
+  away.world_T_camera.rotation = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()) * away.world_T_camera.rotation;
+  MapReuse map_reuse(everyFourFrames());
+  const std::vector<PointId> all = foundIn(made, map_reuse, ReuseOf::all);
+  for (int frame = 0; frame < 3; ++frame) EXPECT_TRUE(foundIn(away, map_reuse, ReuseOf::turn).empty());
+  EXPECT_TRUE(foundIn(made, map_reuse, ReuseOf::missed).empty());
+  EXPECT_TRUE(foundIn(away, map_reuse, ReuseOf::turn).empty());
+  EXPECT_EQ(foundIn(made, map_reuse, ReuseOf::missed), all);
 }
 
 TEST(MapReuse, CanBeSwitchedOff) {
