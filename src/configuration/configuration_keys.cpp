@@ -353,7 +353,7 @@ Keys methodKeys(Settings& settings) {
       heading("map_reuse", "Map points that come into view again are found and followed on"),
       {"map_reuse.enabled", &reuse.enabled, "", 0, 0, "off only to measure what it gains"},
       {"map_reuse.interval", &reuse.interval, "frames", 1, 1000,
-       "from one search for a point to the next"},
+       "from one search to the next; keyframes search besides"},
       {"map_reuse.radius", &reuse.search.radius, "px", 0.5, 50, "searched around the projection"},
       {"map_reuse.least_correlation", &reuse.search.least_correlation, "", -1, 1, "with the keyframe's patch"},
       {"map_reuse.outlier_px", &reuse.outlier_px, "px", 0.1, 100, "farther across its edge a point is not believed"},

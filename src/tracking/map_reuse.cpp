@@ -6,8 +6,6 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::size_t usual_points_in_view = 4096;
-
 SearchPoint searchPointOf(const MapView& view, const ViewPoint& point) {
   const ViewKeyframe& source = view.keyframes[point.source];
   SearchPoint search;
@@ -41,66 +39,28 @@ void compareWithMap(const MapView& view, std::vector<Track>& tracks) {
   }
 }
 
-MapReuse::MapReuse(const MapReuseOptions& options) : options_(options) { searches_.reserve(usual_points_in_view); }
-
-bool MapReuse::isLookedFor(ReuseOf which, PointId point) const {
-  switch (which) {
-    case ReuseOf::all:
-      return true;
-    case ReuseOf::turn:
-      return (point + frame_) % options_.interval == 0;
-    case ReuseOf::missed:
-      break;
-  }
-  const auto latest = std::lower_bound(searches_.begin(), searches_.end(), point,
-                                       [](const Search& search, PointId wanted) { return search.point < wanted; });
-  return latest == searches_.end() || latest->point != point || frame_ - latest->frame >= options_.interval;
-}
-
-void MapReuse::remember(const SearchPoints& points, const VisiblePoints& visible, std::pmr::memory_resource* memory) {
-  std::pmr::vector<Search> merged(memory);
-  merged.reserve(searches_.size() + visible.size());
-  auto before = searches_.begin();
-  const auto takeBefore = [&] {
-    if (frame_ - before->frame < options_.interval) merged.push_back(*before);
-    ++before;
-  };
-  for (const VisiblePoint& now : visible) {
-    const PointId id = points[now.index].id;
-    while (before != searches_.end() && before->point < id) takeBefore();
-    if (before != searches_.end() && before->point == id) ++before;
-    merged.push_back({id, frame_});
-  }
-  while (before != searches_.end()) takeBefore();
-  searches_.assign(merged.begin(), merged.end());
-}
-
-void MapReuse::addTracks(ReuseOf which, const Camera& camera, const MapView& view, const FrameImages& images,
-                         const EdgeMap& edges, const MovingCamera& moving, std::size_t most, std::vector<Track>& tracks,
-                         std::pmr::memory_resource* memory) {
-  if (which == ReuseOf::turn) ++frame_;
-  if (!options_.enabled || tracks.size() >= most) return;
+void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages& images, const EdgeMap& edges,
+                    const MovingCamera& moving, std::size_t most, const MapReuseOptions& options,
+                    std::vector<Track>& tracks, std::pmr::memory_resource* memory) {
+  if (!options.enabled || tracks.size() >= most) return;
   SearchPoints points(memory);
   points.reserve(view.points.size());
   std::size_t t = 0;
   for (const ViewPoint& point : view.points) {
     while (t < tracks.size() && tracks[t].id < point.id) ++t;
-    const bool is_followed = t < tracks.size() && tracks[t].id == point.id;
-    if (is_followed || point.source < 0 || !isLookedFor(which, point.id)) continue;
-    points.push_back(searchPointOf(view, point));
+    const bool followed = t < tracks.size() && tracks[t].id == point.id;
+    if (!followed && point.source >= 0) points.push_back(searchPointOf(view, point));
   }
-  const VisiblePoints visible = visiblePoints(camera, points, moving, options_.search, memory);
-  remember(points, visible, memory);
   const Pose camera_T_world = moving.world_T_camera.inverse();
   const auto by_id = [](const Track& a, const Track& b) { return a.id < b.id; };
-  for (const FoundPoint& found : findVisiblePoints(points, visible, images, edges, options_.search, memory)) {
+  for (const FoundPoint& found : searchMapPoints(camera, points, images, edges, moving, options.search, memory)) {
     if (tracks.size() >= most) break;
     const SearchPoint& point = points[found.index];
     const Measurement measurement = measurementOf(point, found);
     const Eigen::Vector2d error =
         projectToRow(camera, moving.twist, camera_T_world * point.position) - measurement.pixel;
-    if (std::abs(measurement.normal.dot(error)) > options_.outlier_px) continue;
-    if (nearTrack(tracks, found.pixel, static_cast<float>(options_.spacing))) continue;
+    if (std::abs(measurement.normal.dot(error)) > options.outlier_px) continue;
+    if (nearTrack(tracks, found.pixel, static_cast<float>(options.spacing))) continue;
     const ViewPoint& view_point = *findPoint(view, point.id);
     Track track;
     track.id = point.id;

@@ -89,7 +89,6 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       preparation_(camera, {edges, points.accuracy, options.blur_gate, pyramidLevels(options)}),
       location_(camera, locationOptions(options)),
       keyframes_(camera, options.keyframes, points),
-      map_reuse_(options.map_reuse),
       motion_(options.inertia, options.inertia_only, options.wheels, options.wheels_only),
       noise_(options.noise),
       scratch_memory_(new std::byte[scratch_size]),
@@ -145,7 +144,7 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
     lose(work);
     return is_told;
   }
-  reuseMapInTurn(work);
+  reuseMapWhenDue(work);
   tell(work);
   remember();
   if (mapStands() || mapping_busy) return is_told;
@@ -218,7 +217,7 @@ bool Tracker::goOnByWheels(std::int64_t time_ns) {
   frame_.inlier_count = 0;
   frame_.outlier_share = 0;
   frame_.scene_depth = last_.scene_depth;
-  reuseMap(ReuseOf::all, frame_);
+  reuseMap(frame_);
   return true;
 }
 
@@ -333,7 +332,7 @@ void Tracker::keepEdgesOfStart(FollowedFrame& frame) {
 }
 
 void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work) {
-  reuseMap(ReuseOf::missed, frame);
+  reuseMap(frame);
   const StraightEdges straight = straightEdges(camera_, *frame.edges, options_.straight_edges, &scratch_);
   putOnStraightEdges(camera_, straight, frame);
   const KeyframeId id = keyframes_.make(frame, preparation_.accuracy());
@@ -354,32 +353,30 @@ bool Tracker::isToSeeElsewhere(TrackedFrame& for_mapping) {
   return true;
 }
 
-// A frozen map's points are all there is to track, so that all are looked for, and as soon as they become few.
+// A frozen map's points are all there is to track, so that they are looked for as soon as they become few.
 bool Tracker::isReuseDue() const {
+  const int interval = options_.map_reuse.interval;
+  if (!options_.map_is_frozen) return keyframes_.frames() % interval == interval - 1;
   const double few = few_left * static_cast<double>(tracks_at_reuse_);
-  return since_reuse_ + 1 >= options_.map_reuse.interval || static_cast<double>(frame_.tracks.size()) <= few ||
-         tracks_at_reuse_ == 0;
+  return since_reuse_ + 1 >= interval || static_cast<double>(frame_.tracks.size()) <= few || tracks_at_reuse_ == 0;
 }
 
-void Tracker::reuseMapInTurn(Work& work) {
+void Tracker::reuseMapWhenDue(Work& work) {
   if (!mapStands()) return;
-  if (!options_.map_is_frozen) {
-    reuseMap(ReuseOf::turn, frame_);
-  } else if (isReuseDue()) {
-    reuseMap(ReuseOf::all, frame_);
-    since_reuse_ = 0;
-    tracks_at_reuse_ = frame_.tracks.size();
-  } else {
+  if (!isReuseDue()) {
     ++since_reuse_;
     return;
   }
+  reuseMap(frame_);
+  since_reuse_ = 0;
+  tracks_at_reuse_ = frame_.tracks.size();
   work.clock.finished(Stage::map_reuse);
 }
 
-void Tracker::reuseMap(ReuseOf which, FollowedFrame& frame) {
+void Tracker::reuseMap(FollowedFrame& frame) {
   scratch_.release();
-  map_reuse_.addTracks(which, camera_, view_, *frame.images, *frame.edges, {frame.world_T_camera, frame.twist},
-                       most_tracks_, frame.tracks, &scratch_);
+  reuseMapPoints(camera_, view_, *frame.images, *frame.edges, {frame.world_T_camera, frame.twist}, most_tracks_,
+                 options_.map_reuse, frame.tracks, &scratch_);
 }
 
 void Tracker::tell(Work& work) {
@@ -537,7 +534,6 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   std::swap(last_, kept_);
   kept_.forget();
   spare_.forget();
-  map_reuse_.forget();
   if (!points.empty()) last_.tracks.clear();
   for (const FoundAgain& found : points) last_.tracks.push_back(trackOf(found));
   if (options_.map_is_frozen) compareWithMap(view, last_.tracks);

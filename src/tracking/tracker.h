@@ -140,8 +140,8 @@ class Tracker {
   void becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work);
   bool isToSeeElsewhere(TrackedFrame& for_mapping);
   bool isReuseDue() const;
-  void reuseMapInTurn(Work& work);
-  void reuseMap(ReuseOf which, FollowedFrame& frame);
+  void reuseMapWhenDue(Work& work);
+  void reuseMap(FollowedFrame& frame);
   void tell(Work& work);
   void tellMotion(const Pose& world_T_camera, FrameResult& result) const;
   Matrix6d withSharedNoise(const Matrix6d& covariance) const;
@@ -163,7 +163,6 @@ class Tracker {
   FramePreparation preparation_;
   FrameLocation location_;
   KeyframeMaking keyframes_;
-  MapReuse map_reuse_;
   UnseenMotion motion_;
   MeasuredNoise noise_;
   std::unique_ptr<std::byte[]> scratch_memory_;  // as much of it takes room as was ever used

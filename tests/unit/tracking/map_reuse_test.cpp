@@ -42,12 +42,6 @@ Revisit revisit() {
   return made;
 }
 
-void reuse(const Revisit& made, ReuseOf which, std::size_t most, std::vector<Track>& tracks,
-           const MapReuseOptions& options = {}) {
-  MapReuse(options).addTracks(which, made.camera, made.view, *made.images, made.edges, made.world_T_camera, most,
-                              tracks);
-}
-
 double errorOf(const Revisit& made, const Track& track) {
   const Eigen::Vector3d position = worldPosition(made.view, *findPoint(made.view, track.id));
   const Eigen::Vector2d projected = project(made.camera, made.world_T_camera.inverse() * position);
@@ -58,7 +52,7 @@ TEST(MapReuse, FindsWhatCameIntoViewAgainWhereItIs) {
   const Revisit made = revisit();
   ASSERT_GT(made.view.points.size(), 100u);
   std::vector<Track> tracks;
-  reuse(made, ReuseOf::all, 1000, tracks);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, {}, tracks);
   EXPECT_GT(tracks.size(), made.view.points.size() / 2);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     EXPECT_LT(errorOf(made, tracks[i]), 0.5);
@@ -71,9 +65,9 @@ TEST(MapReuse, FindsWhatCameIntoViewAgainWhereItIs) {
 TEST(MapReuse, WhatIsFollowedIsNotTakenTwiceAndTheNumberIsKept) {
   const Revisit made = revisit();
   std::vector<Track> tracks;
-  reuse(made, ReuseOf::all, 40, tracks);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 40, {}, tracks);
   ASSERT_EQ(tracks.size(), 40u);
-  reuse(made, ReuseOf::all, 60, tracks);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 60, {}, tracks);
   ASSERT_EQ(tracks.size(), 60u);
   for (std::size_t i = 1; i < tracks.size(); ++i) EXPECT_LT(tracks[i - 1].id, tracks[i].id);
 }
@@ -83,73 +77,8 @@ TEST(MapReuse, NothingIsFoundInAnotherPlace) {
   made.images = imagesOf(cv::Mat(made.camera.height, made.camera.width, CV_8U, cv::Scalar(100)), 1);
   made.edges = detectEdges(made.images->pyramid.levels[0], EdgeOptions());
   std::vector<Track> tracks;
-  reuse(made, ReuseOf::all, 1000, tracks);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, {}, tracks);
   EXPECT_TRUE(tracks.empty());
-}
-
-std::vector<PointId> idsOf(const std::vector<Track>& tracks) {
-  std::vector<PointId> ids;
-  for (const Track& track : tracks) ids.push_back(track.id);
-  return ids;
-}
-
-// As one call finds them.
-std::vector<PointId> foundIn(const Revisit& made, MapReuse& map_reuse, ReuseOf which) {
-  std::vector<Track> tracks;
-  map_reuse.addTracks(which, made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, tracks);
-  return idsOf(tracks);
-}
-
-MapReuseOptions everyFourFrames() {
-  MapReuseOptions options;
-  options.interval = 4;
-  options.spacing = 0;  // or neighbours would hide each other
-  return options;
-}
-
-TEST(MapReuse, InTurnEachPointIsLookedForOnceInAnInterval) {
-  const Revisit made = revisit();
-  MapReuse map_reuse(everyFourFrames());
-  std::vector<PointId> found;
-  std::size_t most = 0;
-  for (int frame = 0; frame < 4; ++frame) {
-    const std::vector<PointId> now = foundIn(made, map_reuse, ReuseOf::turn);
-    most = std::max(most, now.size());
-    found.insert(found.end(), now.begin(), now.end());
-  }
-  std::sort(found.begin(), found.end());
-  const std::vector<PointId> all = foundIn(made, map_reuse, ReuseOf::all);
-  ASSERT_GT(all.size(), 100U);
-  EXPECT_EQ(found, all);
-  EXPECT_LT(most, all.size() / 2);
-}
-
-TEST(MapReuse, WhatWasMissedIsWhatWasNotLookedForWithinTheInterval) {
-  const Revisit made = revisit();
-  MapReuse map_reuse(everyFourFrames());
-  const std::vector<PointId> turn = foundIn(made, map_reuse, ReuseOf::turn);
-  const std::vector<PointId> missed = foundIn(made, map_reuse, ReuseOf::missed);
-  std::vector<PointId> together;
-  std::merge(turn.begin(), turn.end(), missed.begin(), missed.end(), std::back_inserter(together));
-  MapReuse at_once(everyFourFrames());
-  const std::vector<PointId> all = foundIn(made, at_once, ReuseOf::all);
-  EXPECT_EQ(together, all) << "none twice, none left out";
-  EXPECT_TRUE(foundIn(made, map_reuse, ReuseOf::missed).empty());
-  map_reuse.forget();
-  EXPECT_EQ(foundIn(made, map_reuse, ReuseOf::missed), all);
-}
-
-// A map that shows nothing of them for a while, as when the camera turns away and back.
-TEST(MapReuse, AfterTheIntervalPointsAreMissedAgain) {
-  const Revisit made = revisit();
-  Revisit away = made;
-  away.world_T_camera.rotation = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()) * away.world_T_camera.rotation;
-  MapReuse map_reuse(everyFourFrames());
-  const std::vector<PointId> all = foundIn(made, map_reuse, ReuseOf::all);
-  for (int frame = 0; frame < 3; ++frame) EXPECT_TRUE(foundIn(away, map_reuse, ReuseOf::turn).empty());
-  EXPECT_TRUE(foundIn(made, map_reuse, ReuseOf::missed).empty());
-  EXPECT_TRUE(foundIn(away, map_reuse, ReuseOf::turn).empty());
-  EXPECT_EQ(foundIn(made, map_reuse, ReuseOf::missed), all);
 }
 
 TEST(MapReuse, CanBeSwitchedOff) {
@@ -157,7 +86,7 @@ TEST(MapReuse, CanBeSwitchedOff) {
   MapReuseOptions off;
   off.enabled = false;
   std::vector<Track> tracks;
-  reuse(made, ReuseOf::all, 1000, tracks, off);
+  reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, off, tracks);
   EXPECT_TRUE(tracks.empty());
 }
 
