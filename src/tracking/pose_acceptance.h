@@ -12,7 +12,8 @@ struct AcceptanceOptions {
   double least_inlier_share = 0.35;  // of the map points in view: fewer, and the pose is not believed ...
   double least_points_share = 0.15;  // ... nor with fewer than this share of the points of the pose before ...
   double largest_deviation = 0.03;   // ... nor where it is less certain: share of the scene's depth, or angle [rad]
-  // The first pose after a loss or blur, or after the map was found again, needs a good part of the points before ...
+  // The first pose after a loss or blur, or after the camera was found again, needs a good part of the points that the
+  // last good pose had, or that it was found by ...
   double regain_points_share = 0.7;
   // ... or fewer of them, where these are most of the map points in view.
   double regain_fewest_points_share = 0.3;
@@ -27,7 +28,7 @@ struct AcceptanceOptions {
 
 // What a pose is judged against.
 struct AcceptanceContext {
-  int inliers_before = 0;     // of the last frame that was located; found again: its map points
+  int inliers_before = 0;     // of the last frame that was located; of one found by others: its map points
   bool regains = false;       // the frame before was blurred, lost, or found again by others
   bool knows_motion = false;  // the two frames before were located in this map, so that a motion is expected
   double scene_depth = 1;     // [map units]
