@@ -255,6 +255,8 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
   const Keyframe& last = map_.keyframes[last_id];
   result = recoverTrackLoss(camera_, map_.keyframes[before], last, lost, options_.recovery);
   if (!result.found) return result;
+  TrackedFrame found = lost;
+  leaveOutContradictions(camera_, map_, result, options_.recovery.largest_miss, found.observations);
   for (const RecoveredPoint& recovered : result.points) {
     MapPoint point;
     point.id = recovered.id;
@@ -269,7 +271,6 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
     map_.points.emplace(point.id, std::move(point));  // what is mapped already keeps its place
     candidates_.erase(recovered.id);
   }
-  TrackedFrame found = lost;
   found.world = world_;
   found.world_T_camera = result.world_T_camera;
   found.reason = "recovery";

@@ -5,11 +5,11 @@
 #include <limits>
 #include <map>
 
+#include "adjustment/reprojection.h"
 #include "geometry/epipolar.h"
 #include "geometry/median.h"
 #include "geometry/resectioning.h"
 #include "geometry/triangulation.h"
-#include "map/map.h"
 
 namespace edgeslam {
 namespace {
@@ -32,6 +32,7 @@ struct LocalStructure {
   std::vector<double> inverse_depths;  // one a track; 0: none
   std::vector<double> depth_sigmas;
   std::vector<char> inliers;  // one a track
+  std::vector<char> misfits;  // likewise: not those that only lack a depth
   int inlier_count = 0;
 };
 
@@ -94,6 +95,7 @@ void triangulateTracks(const Camera& camera, const std::vector<Track3>& tracks, 
   local.inverse_depths.assign(tracks.size(), 0.0);
   local.depth_sigmas.assign(tracks.size(), 0.0);
   local.inliers.assign(tracks.size(), 0);
+  local.misfits.assign(tracks.size(), 0);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const TriangulationResult point =
         triangulate(camera, tracks[i].middle->bearing, {{last_T_local, tracks[i].last->measurement}});
@@ -157,6 +159,7 @@ bool adjustLocal(const Camera& camera, const std::vector<Track3>& tracks, const 
       local.depth_sigmas[i] = result.depth_sigmas[p];
       const bool fits = result.errors[2 * p] < options.outlier && result.errors[2 * p + 1] < options.outlier;
       const bool has_depth = local.depth_sigmas[i] < options.largest_depth_sigma * local.inverse_depths[i];
+      if (!fits) local.misfits[i] = 1;
       // Points of uncertain depth still hold the rotation in the second round; they only don't count as structure.
       local.inliers[i] = fits && (has_depth || round == 0) ? 1 : 0;
       local.inlier_count += local.inliers[i];
@@ -297,12 +300,28 @@ RecoveryResult recoverTrackLoss(const Camera& camera, const Keyframe& t_minus_2,
   result.world_T_camera = carryOver(t_minus_1.world_T_camera, local.local_T_last, result.scale);
   result.covariance = covarianceOfLast(camera, tracks, local, result, t_minus_1.world_T_camera, scale_sigma);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (local.misfits[i]) result.misfits.push_back(tracks[i].middle->point);
     if (!local.inliers[i]) continue;
     const PointObservation& host = *tracks[i].middle;
     result.points.push_back({host.point, host.bearing, local.inverse_depths[i] / result.scale,
                              local.depth_sigmas[i] / result.scale, host.corner, host.chain, host.order});
   }
   return result;
+}
+
+void leaveOutContradictions(const Camera& camera, const Map& map, const RecoveryResult& found, double largest_miss,
+                            std::vector<PointObservation>& observations) {
+  const CameraFrame frame = cameraFrame(found.world_T_camera);
+  const auto contradicts = [&](const PointObservation& seen) {
+    if (std::binary_search(found.misfits.begin(), found.misfits.end(), seen.point)) return true;
+    const auto point = map.points.find(seen.point);
+    if (point == map.points.end()) return false;
+    Eigen::Vector2d residual;
+    const bool is_in_front = poseResidual(camera, {seen.measurement.pixel, whitening(seen.measurement)}, frame,
+                                          worldPosition(map, point->second), residual, nullptr);
+    return !is_in_front || residual.norm() > largest_miss;
+  };
+  observations.erase(std::remove_if(observations.begin(), observations.end(), contradicts), observations.end());
 }
 
 }  // namespace edgeslam

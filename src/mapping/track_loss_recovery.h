@@ -10,7 +10,7 @@
 #include "adjustment/bundle_adjustment.h"
 #include "adjustment/pose_adjustment.h"
 #include "geometry/camera.h"
-#include "map/keyframe.h"
+#include "map/map.h"
 
 namespace edgeslam {
 
@@ -26,6 +26,7 @@ struct RecoveryOptions {
   double largest_scale_sigma = 0.1;      // standard deviation of the scale, share of it
   double rotation_difference_deg = 2;    // of t-2 against t-1, in L and in the map ...
   double direction_difference_deg = 15;  // ... and of the direction from one to the other
+  double largest_miss = 20;  // whitened, of a point of the map from where the pose found has it: it is something else
   BundleOptions bundle{20, 2.0};
 };
 
@@ -47,6 +48,7 @@ struct RecoveryResult {
   Matrix6d covariance =
       Matrix6d::Zero();                // of its right-hand update [translation; rotation], the scale's doubt included
   std::vector<RecoveredPoint> points;  // ascending by id
+  std::vector<PointId> misfits;        // tracks through the three views that contradict them, ascending
   int tracks = 0;                      // through the three views
   int inliers = 0;
   double scale = 0;  // eq. 2: map units per unit of L
@@ -56,5 +58,10 @@ struct RecoveryResult {
 // their depths is not used. Same input, same result.
 RecoveryResult recoverTrackLoss(const Camera& camera, const Keyframe& t_minus_2, const Keyframe& t_minus_1,
                                 const TrackedFrame& t, const RecoveryOptions& options);
+
+// Takes what contradicts the pose found out of the frame's observations: misfits, and points of the map that are
+// elsewhere. As a keyframe the frame would bend the map by them: of a torn image they are half of all.
+void leaveOutContradictions(const Camera& camera, const Map& map, const RecoveryResult& found, double largest_miss,
+                            std::vector<PointObservation>& observations);
 
 }  // namespace edgeslam

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "unit/mapping/edge_scene.h"
@@ -124,6 +125,42 @@ TEST(TrackLossRecovery, WrongTracksAreLeftOut) {
   std::size_t kept = 0;
   for (const RecoveredPoint& point : result.points) kept += wrong.count(point.id);
   EXPECT_LT(kept, wrong.size() / 4);  // a wrong pixel may lie on its epipolar line, or along its edge
+}
+
+// Half of a torn image was read at another time.
+TEST(TrackLossRecovery, WhatContradictsThePoseIsLeftOut) {
+  ThreeViews views = passBy(realistic());
+  std::set<PointId> torn;
+  for (PointObservation& observation : views.last.observations) {
+    if (observation.measurement.pixel.y() < 300) continue;
+    observation.measurement.pixel += Eigen::Vector2d(25, 15);
+    observation.bearing = bearing(testCamera(), observation.measurement.pixel);
+    torn.insert(observation.point);
+  }
+  const RecoveryResult result = recover(views);
+  ASSERT_TRUE(result.found) << result.reason;
+  EXPECT_TRUE(std::is_sorted(result.misfits.begin(), result.misfits.end()));
+  EXPECT_GT(torn.size(), views.last.observations.size() / 5);
+
+  // The map knows half of the points; of the others only the three views tell.
+  Map map;
+  map.keyframes.push_back(views.middle);
+  for (const PointObservation& seen : views.middle.observations) {
+    if (seen.point % 2 == 0) continue;
+    const auto& position = views.scene.points[static_cast<std::size_t>(seen.point)].position;
+    MapPoint point;
+    point.id = seen.point;
+    point.host = views.middle.id;
+    const Eigen::Vector3d in_host = views.world_T_middle.inverse() * position;
+    setPlace(Eigen::Vector3d::Zero(), in_host.normalized(), 1 / in_host.norm(), 0.01, point);
+    map.points.emplace(point.id, point);
+  }
+  std::vector<PointObservation> left = views.last.observations;
+  leaveOutContradictions(testCamera(), map, result, RecoveryOptions().largest_miss, left);
+  std::size_t torn_left = 0;
+  for (const PointObservation& seen : left) torn_left += torn.count(seen.point);
+  EXPECT_LT(torn_left, torn.size() / 4);  // what moved along its edge
+  EXPECT_GT(left.size() - torn_left, 9 * (views.last.observations.size() - torn.size()) / 10);
 }
 
 TEST(TrackLossRecovery, BareScenesMayHaveFewerPointsThanThePaperAsks) {
