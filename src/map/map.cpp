@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/median.h"
+
 namespace edgeslam {
 
 SpaceLine inWorld(const Map& map, const MapLine& line) {
@@ -53,6 +55,16 @@ PointId firstFreePoint(const Map& map) {
     if (!keyframe.observations.empty()) first = std::max(first, keyframe.observations.back().point + 1);
   }
   return first;
+}
+
+double sceneDistance(const Map& map, const Keyframe& keyframe, std::size_t fewest) {
+  std::vector<double> distances;
+  for (const PointObservation& seen : keyframe.observations) {
+    const auto point = map.points.find(seen.point);
+    if (point == map.points.end()) continue;
+    distances.push_back((worldPosition(map, point->second) - keyframe.world_T_camera.translation).norm());
+  }
+  return distances.empty() || distances.size() < fewest ? 0 : upperMedian(distances);
 }
 
 std::vector<int> sharedPoints(const Map& map, KeyframeId keyframe) {

@@ -66,6 +66,9 @@ inline std::size_t numberOfKeyframes(const Map& map) {
 // One over the largest number of a track that any keyframe saw.
 PointId firstFreePoint(const Map& map);
 
+// Median distance of the map points that a keyframe sees from it [map units]; 0 where they are fewer than `fewest`.
+double sceneDistance(const Map& map, const Keyframe& keyframe, std::size_t fewest = 1);
+
 // P18: number of map points that each keyframe shares with `keyframe`, by keyframe number (0 for itself).
 std::vector<int> sharedPoints(const Map& map, KeyframeId keyframe);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/median.h"
 #include "mapping/line_association.h"
 #include "mapping/line_placement.h"
 #include "mapping/wheel_turn_check.h"
@@ -255,6 +256,15 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
   const Keyframe& last = map_.keyframes[last_id];
   result = recoverTrackLoss(camera_, map_.keyframes[before], last, lost, options_.recovery);
   if (!result.found) return result;
+  std::vector<double> distances;
+  for (const RecoveredPoint& point : result.points) distances.push_back(1 / point.inverse_depth);
+  const NewPointOptions& new_points = options_.new_points;
+  const double scene = sceneDistance(map_, last, new_points.fewest_of_scene);
+  if (medianOr(scene, std::move(distances)) < new_points.least_distance * scene) {
+    result.found = false;
+    result.reason = "what was tracked seems far nearer than the scene: it moves";
+    return result;
+  }
   TrackedFrame found = lost;
   leaveOutContradictions(camera_, map_, result, options_.recovery.largest_miss, found.observations);
   for (const RecoveredPoint& recovered : result.points) {

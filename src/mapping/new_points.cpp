@@ -52,6 +52,7 @@ void associate(Map& map, Candidates& candidates) {
 int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map, Candidates& candidates) {
   assert(!map.keyframes.empty());
   int added = 0;
+  std::map<KeyframeId, double> scene_distances;  // of hosts
   const KeyframeId latest = map.keyframes.back().id;
   for (auto candidate = candidates.begin(); candidate != candidates.end();) {
     const auto& [id, views] = *candidate;
@@ -80,6 +81,12 @@ int addNewPoints(const Camera& camera, const NewPointOptions& options, Map& map,
         depth.converged && depth.inverse_depth > 0 && depth.sigma < options.largest_depth_sigma * depth.inverse_depth &&
         degrees(depth.parallax) > options.least_parallax_deg && depth.largest_error < options.largest_error;
     if (!good) {
+      ++candidate;
+      continue;
+    }
+    const auto [scene, is_new_host] = scene_distances.emplace(host.id, 0);
+    if (is_new_host) scene->second = sceneDistance(map, host, options.fewest_of_scene);
+    if (depth.inverse_depth * options.least_distance * scene->second > 1) {
       ++candidate;
       continue;
     }

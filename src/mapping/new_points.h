@@ -16,6 +16,10 @@ struct NewPointOptions {
   double largest_error = 3.0;         // whitened reprojection error over all views
   double three_view_error = 4.0;      // whitened, P7
   int fewest_views = 2;               // keyframes that see the point, its host included
+  // Share of the median distance of what its host sees: what seems to be nearer moves against the camera, and would
+  // have all the say in where that is.
+  double least_distance = 0.05;
+  std::size_t fewest_of_scene = 20;  // points that tell this distance
 };
 
 // Keyframes that saw a track which is no map point, ascending: the first is its host.

@@ -148,8 +148,8 @@ void MappingWorker::relocalise(const MappingMessage& message) {
     const WorldPose last = mapper_.inWorldOfToday({message.frame.world, *message.last_good_pose});
     reachable = reachableFrom(map, last.world_T_camera, message.seconds_since, last.world);
   }
-  const RelocalisationResult result =
-      relocalisation_.relocalise(map, *message.frame.images, *message.edges, reachable, message.frame.noise_factor);
+  const RelocalisationResult result = relocalisation_.relocalise(map, *message.frame.images, *message.edges, reachable,
+                                                                 message.frame.noise_factor, message.latest_believed);
   not_found_ = result.reason;
   if (!result.found) return;
   mapper_.goBackTo(result.keyframe);

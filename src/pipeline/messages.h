@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,8 +27,9 @@ struct MappingMessage {
   std::optional<Pose> last_good_pose;  // none before the first
   double seconds_since = 0;            // the last good pose
   bool recover = false;                // its tracks run through the last keyframes: P21 before P22
-  bool starting = false;               // a world is begun beside those in which it is looked for
-  std::int64_t sent_ns = 0;            // steady clock; for statistics alone
+  KeyframeId latest_believed = std::numeric_limits<KeyframeId>::max();  // what was mapped after it is in doubt
+  bool starting = false;     // a world is begun beside those in which it is looked for
+  std::int64_t sent_ns = 0;  // steady clock; for statistics alone
 };
 
 // The messages of one frame; their memory is used again for those of the next.

@@ -1,5 +1,6 @@
 #include "pipeline/tracking_worker.h"
 
+#include <limits>
 #include <utility>
 
 namespace edgeslam {
@@ -7,6 +8,8 @@ namespace {
 
 constexpr std::size_t longest_reason = 256;
 constexpr std::int64_t search_interval_ns = 100'000'000;  // while a world is begun, which must not wait for searches
+constexpr std::int64_t doubt_interval_ns =
+    200'000'000;                        // while poses are in doubt, and mapping has keyframes to see to
 constexpr int frames_with_tracks = 10;  // after a loss: later, hardly a track runs through the last keyframes (P21)
 
 }  // namespace
@@ -48,10 +51,10 @@ const FrameResult& TrackingWorker::process(std::int64_t index, std::int64_t time
     result.reason.assign(start_reason_);
   }
   if (!mapping_busy && isToAskWhere(time_ns)) askWhere(time_ns, nextMessage(messages));
-  // A pose by inertia alone does not end the search for the frame.
+  // A pose by inertia alone does not end the search for the frame, nor does one in doubt.
   if (result.state == TrackingState::tracking && tracker_.latestIsTracked()) {
     lost_frames_ = 0;
-    asked_frame_ = -1;
+    if (!tracker_.lastBeforeDoubt()) asked_frame_ = -1;
     not_found_.clear();
     last_good_pose_ = result.world_T_camera;
     last_good_ns_ = time_ns;
@@ -67,6 +70,7 @@ MappingMessage& TrackingWorker::nextMessage(FrameMessages& messages) {
   message.number = next_message_++;
   message.recover = message.starting = false;
   message.edges.reset();
+  message.latest_believed = std::numeric_limits<KeyframeId>::max();
   message.last_good_pose.reset();
   message.seconds_since = 0;
   return message;
@@ -74,23 +78,36 @@ MappingMessage& TrackingWorker::nextMessage(FrameMessages& messages) {
 
 bool TrackingWorker::isToAskWhere(std::int64_t time_ns) const {
   if (!is_looked_for_ || asked_ >= 0) return false;
+  if (isInDoubt()) return time_ns - asked_ns_ >= doubt_interval_ns;
   return tracker_.hasLostFrame() || (tracker_.startsBesideOthers() && time_ns - asked_ns_ >= search_interval_ns);
+}
+
+bool TrackingWorker::isInDoubt() const {
+  return tracker_.lastBeforeDoubt() && !tracker_.hasLostFrame() && tracker_.latestIsTracked();
 }
 
 void TrackingWorker::askWhere(std::int64_t time_ns, MappingMessage& message) {
   asked_ = message.number;
   asked_ns_ = time_ns;
-  message.starting = !tracker_.hasLostFrame();
-  if (message.starting) {
-    tracker_.keepStartingFrame(message.frame);
-  } else {
+  message.starting = !tracker_.hasLostFrame() && !isInDoubt();
+  if (tracker_.hasLostFrame()) {
     tracker_.keepLostFrame(message.frame);
+  } else {
+    tracker_.keepLatestFrame(message.frame);
   }
   message.edges = tracker_.keptEdges();
+  asked_frame_ = message.frame.frame_index;
+  if (const std::optional<ConfirmedPose>& before = tracker_.lastBeforeDoubt()) return lookBefore(*before, message);
   message.last_good_pose = last_good_pose_;
   message.seconds_since = static_cast<double>(time_ns - last_good_ns_) * 1e-9;
   message.recover = recovers_ && !message.starting && last_good_pose_ && lost_frames_ <= frames_with_tracks;
-  asked_frame_ = message.frame.frame_index;
+}
+
+// Only in what was mapped before the doubt: what was mapped since says the same again.
+void TrackingWorker::lookBefore(const ConfirmedPose& doubt, MappingMessage& message) {
+  message.last_good_pose = doubt.world_T_camera;
+  message.seconds_since = static_cast<double>(message.frame.time_ns - doubt.time_ns) * 1e-9;
+  message.latest_believed = doubt.keyframe;
 }
 
 const FrameResult& TrackingWorker::skip(std::int64_t index, std::int64_t time_ns, const std::string& problem) {

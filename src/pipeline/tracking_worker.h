@@ -51,7 +51,9 @@ class TrackingWorker {
 
   MappingMessage& nextMessage(FrameMessages& messages);
   bool isToAskWhere(std::int64_t time_ns) const;
+  bool isInDoubt() const;
   void askWhere(std::int64_t time_ns, MappingMessage& message);
+  static void lookBefore(const ConfirmedPose& doubt, MappingMessage& message);
 
   bool recovers_ = true;       // lost frames are made keyframes (P21)
   bool is_looked_for_ = true;  // where a frame is lost

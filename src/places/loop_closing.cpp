@@ -6,7 +6,6 @@
 #include <set>
 
 #include "geometry/angles.h"
-#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -30,18 +29,6 @@ double wayBetween(const Map& map, KeyframeId from, KeyframeId to) {
   return way;
 }
 
-// Median distance of the points that a keyframe sees.
-double sceneDistance(const Map& map, KeyframeId keyframe) {
-  std::vector<double> distances;
-  for (const PointObservation& observation : keyframeOf(map, keyframe).observations) {
-    const auto point = map.points.find(observation.point);
-    if (point == map.points.end()) continue;
-    distances.push_back(
-        (worldPosition(map, point->second) - keyframeOf(map, keyframe).world_T_camera.translation).norm());
-  }
-  return distances.empty() ? 0 : upperMedian(distances);
-}
-
 // Where a loop says that the current keyframe is.
 Pose impliedPose(const Map& map, const JudgedLoop& loop) {
   const Similarity candidate_S_current = loop.verification.current_S_candidate.inverse();
@@ -59,7 +46,7 @@ bool fewerInliers(const JudgedLoop& a, const JudgedLoop& b) {
 void refuseContradictions(const Map& map, KeyframeId current, std::vector<JudgedLoop>& loops) {
   constexpr double largest_turn = radians(15);  // between what two loops say [rad] ...
   constexpr double largest_distance = 0.5;      // ... and of the distance of the scene
-  const double distance = largest_distance * sceneDistance(map, current);
+  const double distance = largest_distance * sceneDistance(map, keyframeOf(map, current));
   std::vector<std::size_t> contradicted;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     for (std::size_t j = 0; j < loops.size(); ++j) {
@@ -155,12 +142,12 @@ bool LoopClosing::withinDrift(const Map& map, KeyframeId current, KeyframeId ear
   const double turn = degrees(rotationAngle(world_T_earlier.rotation, world_T_current.rotation));
   if (turn > options_.largest_turn_deg + options_.largest_view_turn_deg) return false;
   const double apart = (world_T_earlier.translation - world_T_current.translation).norm();
-  return apart <
-         allowedMove(map, current, earlier) + std::max(sceneDistance(map, earlier), sceneDistance(map, current));
+  return apart < allowedMove(map, current, earlier) + std::max(sceneDistance(map, keyframeOf(map, earlier)),
+                                                               sceneDistance(map, keyframeOf(map, current)));
 }
 
 double LoopClosing::allowedMove(const Map& map, KeyframeId current, KeyframeId earlier) const {
-  return options_.largest_drift * (wayBetween(map, earlier, current) + sceneDistance(map, earlier));
+  return options_.largest_drift * (wayBetween(map, earlier, current) + sceneDistance(map, keyframeOf(map, earlier)));
 }
 
 JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCandidate& candidate) const {
@@ -207,7 +194,7 @@ void LoopClosing::acceptAgreeingJoin(const Map& map, KeyframeId current, JudgedL
   const KeyframeId younger = is_younger ? current : judged.keyframe, older = is_younger ? judged.keyframe : current;
   const Pose& from_T_camera = keyframeOf(map, younger).world_T_camera;
   const Pose here = moved(join.to_S_from, from_T_camera);
-  const double distance = options_.agreeing_distance * sceneDistance(map, older);
+  const double distance = options_.agreeing_distance * sceneDistance(map, keyframeOf(map, older));
   std::set<KeyframeId> agreeing;
   for (const auto& [keyframe, proposed] : proposed_joins_) {
     if (keyframe == current || proposed.from != join.from || proposed.to != join.to) continue;

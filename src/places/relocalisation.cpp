@@ -73,11 +73,12 @@ void Relocalisation::update(const Map& map) {
   }
 }
 
-std::vector<Relocalisation::Candidate> Relocalisation::candidates(const Map& map, const Thumbnail& thumbnail) const {
+std::vector<Relocalisation::Candidate> Relocalisation::candidates(const Map& map, const Thumbnail& thumbnail,
+                                                                  KeyframeId latest) const {
   const auto better = [](const Candidate& a, const Candidate& b) { return a.match.correlation > b.match.correlation; };
   std::vector<Candidate> ranked;
   for (const auto& [id, known] : keyframes_) {
-    if (!map.keyframes.contains(id) || known.thumbnail.size() != thumbnail.size()) continue;
+    if (id > latest || !map.keyframes.contains(id) || known.thumbnail.size() != thumbnail.size()) continue;
     ranked.push_back({id, matchShifted(known.thumbnail, thumbnail)});
   }
   std::stable_sort(ranked.begin(), ranked.end(), better);
@@ -222,9 +223,10 @@ void Relocalisation::searchFrom(const std::vector<Start>& starts, const Map& map
 }
 
 RelocalisationResult Relocalisation::relocalise(const Map& map, const FrameImages& current, const EdgeMap& edges,
-                                                const std::optional<Reachable>& reachable, double noise_factor) const {
+                                                const std::optional<Reachable>& reachable, double noise_factor,
+                                                KeyframeId latest) const {
   RelocalisationResult result;
-  const std::vector<Candidate> tried = candidates(map, makeThumbnail(current.pyramid, camera_.mask.get()));
+  const std::vector<Candidate> tried = candidates(map, makeThumbnail(current.pyramid, camera_.mask.get()), latest);
   if (tried.empty()) {
     result.reason = "no keyframe looks like this frame";
     return result;

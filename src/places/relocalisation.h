@@ -3,6 +3,7 @@
 // mapping's thread does it: a lost robot does not wait behind an adjustment of the whole map.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -76,10 +77,11 @@ class Relocalisation {
 
   // The pose of a frame of which nothing is known but, where given, what can be reached. Where things repeat and two
   // different poses are as good, there is none. `noise_factor`: how many times as far as presumed its measurements err.
-  // `map`'s keyframes are those added, where they are now. Same input, same result.
+  // It is compared with no keyframes after `latest`. `map`'s keyframes are those added, where they are now. Same input,
+  // same result.
   RelocalisationResult relocalise(const Map& map, const FrameImages& current, const EdgeMap& edges,
-                                  const std::optional<Reachable>& reachable = std::nullopt,
-                                  double noise_factor = 1) const;
+                                  const std::optional<Reachable>& reachable = std::nullopt, double noise_factor = 1,
+                                  KeyframeId latest = std::numeric_limits<KeyframeId>::max()) const;
 
  private:
   struct KnownKeyframe {
@@ -97,7 +99,7 @@ class Relocalisation {
     Pose world_T_camera;
   };
 
-  std::vector<Candidate> candidates(const Map& map, const Thumbnail& thumbnail) const;
+  std::vector<Candidate> candidates(const Map& map, const Thumbnail& thumbnail, KeyframeId latest) const;
   std::vector<Start> startsByTurning(const Map& map, const std::vector<Candidate>& candidates) const;
   std::vector<Start> startsByDescriptors(const Map& map, const std::vector<Candidate>& candidates,
                                          const SearchedFrame& frame) const;

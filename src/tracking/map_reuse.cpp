@@ -39,10 +39,11 @@ void compareWithMap(const MapView& view, std::vector<Track>& tracks) {
   }
 }
 
-void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages& images, const EdgeMap& edges,
-                    const MovingCamera& moving, std::size_t most, const MapReuseOptions& options,
-                    std::vector<Track>& tracks, std::pmr::memory_resource* memory) {
-  if (!options.enabled || tracks.size() >= most) return;
+std::optional<PointsConfirmed> reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages& images,
+                                              const EdgeMap& edges, const MovingCamera& moving, std::size_t most,
+                                              const MapReuseOptions& options, std::vector<Track>& tracks,
+                                              std::pmr::memory_resource* memory) {
+  if (!options.enabled || tracks.size() >= most) return std::nullopt;
   SearchPoints points(memory);
   points.reserve(view.points.size());
   std::size_t t = 0;
@@ -51,15 +52,29 @@ void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages
     const bool followed = t < tracks.size() && tracks[t].id == point.id;
     if (!followed && point.source >= 0) points.push_back(searchPointOf(view, point));
   }
+  const VisiblePoints visible = visiblePoints(camera, points, moving, options.search, memory);
+  const auto confirms = [&](PointId id) {
+    const ViewPoint* point = findPoint(view, id);
+    return point && point->host + options.confirming_age <= view.keyframes.back().id;
+  };
+  PointsConfirmed of_map;
+  for (const Track& track : tracks) {
+    if (!confirms(track.id)) continue;
+    ++of_map.expected;
+    if (track.outlier_frames == 0) ++of_map.confirmed;
+  }
+  for (const VisiblePoint& point : visible) of_map.expected += confirms(points[point.index].id) ? 1 : 0;
+
   const Pose camera_T_world = moving.world_T_camera.inverse();
   const auto by_id = [](const Track& a, const Track& b) { return a.id < b.id; };
-  for (const FoundPoint& found : searchMapPoints(camera, points, images, edges, moving, options.search, memory)) {
-    if (tracks.size() >= most) break;
+  for (const FoundPoint& found : findVisiblePoints(points, visible, images, edges, options.search, memory)) {
     const SearchPoint& point = points[found.index];
     const Measurement measurement = measurementOf(point, found);
     const Eigen::Vector2d error =
         projectToRow(camera, moving.twist, camera_T_world * point.position) - measurement.pixel;
     if (std::abs(measurement.normal.dot(error)) > options.outlier_px) continue;
+    if (confirms(point.id)) ++of_map.confirmed;
+    if (tracks.size() >= most) continue;
     if (nearTrack(tracks, found.pixel, static_cast<float>(options.spacing))) continue;
     const ViewPoint& view_point = *findPoint(view, point.id);
     Track track;
@@ -74,6 +89,7 @@ void reuseMapPoints(const Camera& camera, const MapView& view, const FrameImages
     track.keyframe_pixel = point.source_pixel;
     tracks.insert(std::upper_bound(tracks.begin(), tracks.end(), track, by_id), track);
   }
+  return of_map;
 }
 
 }  // namespace edgeslam

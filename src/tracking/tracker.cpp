@@ -91,6 +91,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
       keyframes_(camera, options.keyframes, points),
       motion_(options.inertia, options.inertia_only, options.wheels, options.wheels_only),
       noise_(options.noise),
+      confirmation_(options.map_confirmation),
       scratch_memory_(new std::byte[scratch_size]),
       scratch_(scratch_memory_.get(), scratch_size),
       spare_(most_tracks_) {
@@ -275,6 +276,7 @@ void Tracker::beginWorld() {
   beFound();
   last_.forget();
   motion_.forget();
+  confirmation_.forget();
   motion_.inertia().forgetLink();
   keyframes_.beginWorld();
 }
@@ -375,8 +377,12 @@ void Tracker::reuseMapWhenDue(Work& work) {
 
 void Tracker::reuseMap(FollowedFrame& frame) {
   scratch_.release();
-  reuseMapPoints(camera_, view_, *frame.images, *frame.edges, {frame.world_T_camera, frame.twist}, most_tracks_,
-                 options_.map_reuse, frame.tracks, &scratch_);
+  const std::optional<PointsConfirmed> of_map =
+      reuseMapPoints(camera_, view_, *frame.images, *frame.edges, {frame.world_T_camera, frame.twist}, most_tracks_,
+                     options_.map_reuse, frame.tracks, &scratch_);
+  if (of_map) {
+    confirmation_.observe(*of_map, {frame.world_T_camera, frame.images->time_ns, view_.keyframes.back().id});
+  }
 }
 
 void Tracker::tell(Work& work) {
@@ -405,9 +411,20 @@ void Tracker::tell(Work& work) {
   result.wheels = view_.wheels;
   result.world_covariance = worldCovariance(camera_, withSharedNoise(frame_.covariance), map_covariance_,
                                             frame_.outlier_share, options_.uncertainty);
+  tellDoubt(result);
   tellMotion(frame_.world_T_camera, result);
   result.reference = view_.keyframes.back().id;
   result.reference_T_camera = view_.keyframes.back().world_T_camera.inverse() * frame_.world_T_camera;
+}
+
+void Tracker::tellDoubt(FrameResult& result) const {
+  if (!confirmation_.lastBeforeDoubt()) return;
+  result.world_covariance.topLeftCorner<3, 3>().diagonal().array() +=
+      confirmation_.positionVariance(frame_.world_T_camera);
+  if (!result.reason.empty()) return;
+  result.reason.assign("in doubt: of ").append(std::to_string(confirmation_.points().expected));
+  result.reason.append(" map points that should be in view ");
+  result.reason.append(std::to_string(confirmation_.points().confirmed)).append(" are found");
 }
 
 void Tracker::tellMotion(const Pose& world_T_camera, FrameResult& result) const {
@@ -521,7 +538,7 @@ void Tracker::keepLostFrame(TrackedFrame& description) {
   description.inertia = motion_.inertia().linkUpTo(kept_.images->time_ns, view_.inertia);
 }
 
-void Tracker::keepStartingFrame(TrackedFrame& description) {
+void Tracker::keepLatestFrame(TrackedFrame& description) {
   kept_number_ = -1;
   kept_.images = last_.images;
   kept_.edges = last_.edges;
@@ -534,6 +551,7 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   std::swap(last_, kept_);
   kept_.forget();
   spare_.forget();
+  confirmation_.forget();
   if (!points.empty()) last_.tracks.clear();
   for (const FoundAgain& found : points) last_.tracks.push_back(trackOf(found));
   if (options_.map_is_frozen) compareWithMap(view, last_.tracks);
@@ -599,6 +617,7 @@ void Tracker::adopt(MapView& view) {
   centre_ = view_.centre;  // what was asked for meanwhile is asked for once more
   tracks_at_reuse_ = 0;
   motion_.scale(new_S_old->scale);
+  confirmation_.move(*new_S_old);
   const Pose moved_pose = moved(*new_S_old, last_.world_T_camera);
   if (is_first) {
     ++worlds_;

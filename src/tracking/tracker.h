@@ -20,6 +20,7 @@
 #include "tracking/frame_preparation.h"
 #include "tracking/frame_result.h"
 #include "tracking/keyframe_making.h"
+#include "tracking/map_confirmation.h"
 #include "tracking/map_reuse.h"
 #include "tracking/measured_noise.h"
 #include "tracking/spare_start.h"
@@ -34,6 +35,7 @@ struct TrackerOptions {
   BlurGateOptions blur_gate;
   LocationOptions location;
   MapReuseOptions map_reuse;
+  MapConfirmationOptions map_confirmation;
   StraightEdgeOptions straight_edges;
   KeyframeOptions keyframes;
   WorldUncertaintyOptions uncertainty;
@@ -90,8 +92,11 @@ class Tracker {
   void keepLostFrame(TrackedFrame& description);
   // While a world is begun beside others: the latest frame is kept, and described, to be looked for in these.
   bool startsBesideOthers() const { return worlds_ > 0 && !mapStands() && last_.isThere(); }
-  void keepStartingFrame(TrackedFrame& description);
   std::shared_ptr<const EdgeMap> keptEdges() const { return kept_.edges; }
+  // The last pose before the map stopped bearing poses out; empty where it does. The latest frame is kept then, and
+  // described, to be looked for in the map as it was.
+  const std::optional<ConfirmedPose>& lastBeforeDoubt() const { return confirmation_.lastBeforeDoubt(); }
+  void keepLatestFrame(TrackedFrame& description);
   // The kept frame's pose was found after all: tracking goes on from it with the points found, or, where none are
   // given, with the tracks that it had. `view` shows the map around it; the view before is left in its place.
   void resume(MapView& view, const Pose& world_T_camera, const Matrix6d& covariance,
@@ -143,6 +148,7 @@ class Tracker {
   void reuseMapWhenDue(Work& work);
   void reuseMap(FollowedFrame& frame);
   void tell(Work& work);
+  void tellDoubt(FrameResult& result) const;
   void tellMotion(const Pose& world_T_camera, FrameResult& result) const;
   Matrix6d withSharedNoise(const Matrix6d& covariance) const;
   void remember();
@@ -165,6 +171,7 @@ class Tracker {
   KeyframeMaking keyframes_;
   UnseenMotion motion_;
   MeasuredNoise noise_;
+  MapConfirmation confirmation_;
   std::unique_ptr<std::byte[]> scratch_memory_;  // as much of it takes room as was ever used
   std::pmr::monotonic_buffer_resource scratch_;  // what one frame needs on the way
 

@@ -26,9 +26,9 @@ class SpoiltRun {
 
   static std::string folderOf(const std::string& place);
 
-  // Runs over the sequence: the program does not fail, and poses said to be good lie within the uncertainty stated with
-  // them.
-  Spoilt run();
+  // Runs over the sequence: the program does not fail, and this share at least of the poses said to be good lie within
+  // the uncertainty stated with them.
+  Spoilt run(double least_share_within = 0.99);
 
   // Good again within so many frames from `first` on, and nearly always from then on.
   static void expectGoodWithin(const Spoilt& result, int first, int frames);

@@ -62,6 +62,15 @@ TEST(Map, CountsSharedPointsByHostsAndViewsAndNotTracksWithoutDepth) {
   EXPECT_EQ(sharedPoints(map, 2), (std::vector<int>{1, 2, 0}));
 }
 
+TEST(Map, TheSceneIsAsFarAsTheMedianOfThePointsSeen) {
+  Map map = threeKeyframes();
+  map.points.at(3).inverse_depth = 0.5;
+  map.points.at(5).inverse_depth = 0.1;
+  EXPECT_NEAR(sceneDistance(map, map.keyframes[1]), 4, 1e-12);  // of 2, 4 and 10
+  EXPECT_EQ(sceneDistance(map, map.keyframes[1], 4), 0);
+  EXPECT_EQ(sceneDistance(Map(), map.keyframes[1]), 0);
+}
+
 TEST(Map, APointLiesAlongItsHostsBearing) {
   Map map = threeKeyframes();
   map.keyframes[1].world_T_camera = {rotationExp({0, M_PI / 2, 0}), {1, 2, 3}};

@@ -125,6 +125,27 @@ TEST(NewPoints, ViewsThatContradictEachOtherGiveNoDepth) {
   EXPECT_EQ(pointOf(upright).add(poses, options, Sight(), spoil), 0);
 }
 
+// Thirty points at 2, and one that moves against the camera: it seems to be forty times nearer.
+TEST(NewPoints, WhatSeemsFarNearerThanTheSceneIsNoPoint) {
+  EdgeScene scene;
+  for (int i = 0; i < 30; ++i) scene.points.push_back({Eigen::Vector3d(0.05 * i - 0.7, 0.1, 2), upright, i, 0, false});
+  scene.points.push_back({Eigen::Vector3d(0.02, 0, 0.05), upright, 30, 0, false});
+  test::Random random(1);
+  Sight sight;
+  sight.least_depth = 0.01;
+  Map keyframes = test::keyframesOf(camera, scene, {sideways(-0.3), sideways(0), sideways(0.01)}, sight, random);
+  ASSERT_EQ(findObservation(keyframes.keyframes[0], 30), nullptr) << "it comes once the scene is known";
+  NewPointOptions options;
+  for (const double least : {0.0, 0.05}) {
+    options.least_distance = least;
+    Map map;
+    Candidates candidates;
+    mapAll(keyframes, options, map, candidates);
+    EXPECT_EQ(map.points.size(), least == 0 ? 31U : 30U);
+    EXPECT_EQ(map.points.count(30), least == 0 ? 1U : 0U);
+  }
+}
+
 // P7: a corner off its epipolar lines, which two of the views' depth would hide.
 TEST(NewPoints, ACornerOffTheCrossingOfItsEpipolarLinesIsRefused) {
   NewPointOptions options;

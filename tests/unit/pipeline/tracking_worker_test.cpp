@@ -146,6 +146,54 @@ TEST(TrackingWorker, ALostFrameIsAskedForWithAllThatIsKnownOfIt) {
   EXPECT_TRUE(question.recover);
 }
 
+// Beside each point of the map ten more that are not where it has them, as after a walk behind something that moves.
+void addPointsThatAreElsewhere(MapView& view) {
+  const std::vector<ViewPoint> points(view.points.begin(), view.points.end());
+  view.keyframes.push_back({view.keyframes.back().id + 5, view.keyframes.back().world_T_camera, nullptr});
+  PointId id = 1'000'000;
+  for (int copy = 0; copy < 10; ++copy) {
+    for (ViewPoint point : points) {
+      const double turn = 0.02 * (1 + copy % 5);  // [rad]
+      point.id = id++;
+      point.host_bearing =
+          rotationExp(copy < 5 ? Eigen::Vector3d(turn, 0, 0) : Eigen::Vector3d(0, turn, 0)) * point.host_bearing;
+      view.points.push_back(point);
+    }
+  }
+}
+
+TEST(TrackingWorker, APoseThatTheMapDoesNotBearOutIsLookedForInTheMapAsItWas) {
+  Followed run(6);
+  EXPECT_TRUE(run.questions().empty());
+  addPointsThatAreElsewhere(run.nextUpdate(0).view);
+  const double sigma_before = run.process(7, 7 * interval_ns, imageAt(7)).world_covariance(0, 0);
+  take(run.worker, run.update);
+  FrameResult doubtful;
+  int i = 8;
+  for (; i < 25 && run.questions().empty(); ++i) doubtful = run.process(i, i * interval_ns, imageAt(i));
+  ASSERT_EQ(run.questions().size(), 1U);
+  EXPECT_EQ(doubtful.state, TrackingState::tracking);
+  EXPECT_EQ(doubtful.reason.rfind("in doubt: of ", 0), 0U) << doubtful.reason;
+  EXPECT_GT(doubtful.world_covariance(0, 0), sigma_before);
+  const MappingMessage question = run.questions().back();
+  EXPECT_EQ(question.frame.frame_index, i - 1);
+  EXPECT_EQ(question.latest_believed, 0);
+  EXPECT_FALSE(question.recover);
+  EXPECT_FALSE(question.starting);
+  ASSERT_TRUE(question.last_good_pose);
+  EXPECT_GT(question.seconds_since, 0);
+
+  // It is asked for one answer at a time, and not with every frame; the answer holds though poses came meanwhile.
+  run.process(i, i * interval_ns, imageAt(i));
+  EXPECT_EQ(run.questions().size(), 1U);
+  MapUpdate& answer = run.nextUpdate(question.number);
+  answer.found = run.foundAt(question.frame.frame_index, static_cast<int>(question.frame.frame_index));
+  take(run.worker, answer);
+  const FrameResult found = run.process(i + 1, (i + 1) * interval_ns, imageAt(i + 1));
+  EXPECT_EQ(found.state, TrackingState::relocalised);
+  EXPECT_LT(distance(found.world_T_camera, path(i + 1)), 0.01);
+}
+
 TEST(TrackingWorker, OnlyOneQuestionAtATime) {
   Followed run(3);
   for (int i = 4; i < 8; ++i) {

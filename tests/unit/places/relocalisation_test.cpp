@@ -207,6 +207,23 @@ TEST(Relocalisation, ForgottenKeyframesAreNotFound) {
   EXPECT_FALSE(relocalisation.relocalise(Map(), frame.images, frame.edges).found);
 }
 
+TEST(Relocalisation, LaterKeyframesAreLeftOutWhereTheyAreInDoubt) {
+  const Relocalisation relocalisation = knowing(place());
+  const Pose truth = near(4, {0.02, 0, 0}, {0, 0, 0});
+  const SeenFrame frame = frameOf(renderRoom(room, placeCamera(), truth));
+  const RelocalisationResult all = relocalisation.relocalise(place(), frame.images, frame.edges);
+  ASSERT_TRUE(all.found) << all.reason;
+  const RelocalisationResult before =
+      relocalisation.relocalise(place(), frame.images, frame.edges, std::nullopt, 1, all.keyframe - 1);
+  if (before.found) {
+    EXPECT_LT(before.keyframe, all.keyframe);
+    EXPECT_LT(positionError(before.world_T_camera, truth), 0.02);
+  }
+  const RelocalisationResult none = relocalisation.relocalise(place(), frame.images, frame.edges, std::nullopt, 1, -1);
+  EXPECT_FALSE(none.found);
+  EXPECT_EQ(none.reason, "no keyframe looks like this frame");
+}
+
 TEST(Relocalisation, KeyframesWithoutImagesArePassedOver) {
   Map map = place();
   map.keyframes[4].images = nullptr;

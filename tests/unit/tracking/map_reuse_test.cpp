@@ -81,6 +81,31 @@ TEST(MapReuse, NothingIsFoundInAnotherPlace) {
   EXPECT_TRUE(tracks.empty());
 }
 
+TEST(MapReuse, TellsHowManyPointsOfSomeAgeAreWhereTheyShouldBe) {
+  Revisit made = revisit();
+  std::vector<Track> tracks;
+  const auto reuse = [&] {
+    return reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, 1000, {}, tracks);
+  };
+  EXPECT_EQ(reuse()->expected, 0);  // all are of the latest keyframe
+  tracks.clear();
+  made.view.keyframes.push_back({MapReuseOptions().confirming_age, made.world_T_camera, nullptr});
+  const PointsConfirmed found = *reuse();
+  EXPECT_GT(found.expected, static_cast<int>(made.view.points.size() / 2));
+  EXPECT_GE(found.confirmed, static_cast<int>(tracks.size()));
+  EXPECT_LE(found.confirmed, found.expected);
+
+  // Those followed now count too, but not where they contradict the pose.
+  for (Track& track : tracks) track.outlier_frames = 1;
+  const PointsConfirmed followed = *reuse();
+  EXPECT_EQ(followed.expected, found.expected);
+  EXPECT_LT(followed.confirmed, found.confirmed / 2);
+
+  tracks.resize(tracks.size() / 2);
+  EXPECT_FALSE(
+      reuseMapPoints(made.camera, made.view, *made.images, made.edges, made.world_T_camera, tracks.size(), {}, tracks));
+}
+
 TEST(MapReuse, CanBeSwitchedOff) {
   const Revisit made = revisit();
   MapReuseOptions off;

@@ -427,7 +427,7 @@ TEST(Tracker, LostForASecondItBeginsAWorldBesideTheOldOne) {
   // And it is looked for in the old one.
   ASSERT_TRUE(run.tracker.startsBesideOthers());
   TrackedFrame asked;
-  run.tracker.keepStartingFrame(asked);
+  run.tracker.keepLatestFrame(asked);
   EXPECT_EQ(asked.kind, FrameKind::lost);
   EXPECT_EQ(asked.frame_index, 5);
   EXPECT_EQ(asked.world, 0);

@@ -1,0 +1,30 @@
+#include "tracking/map_confirmation.h"
+
+namespace edgeslam {
+
+void MapConfirmation::observe(const PointsConfirmed& points, const ConfirmedPose& pose) {
+  points_ = points;
+  const bool contradicts =
+      points.expected >= options_.fewest_expected && points.confirmed < options_.least_share * points.expected;
+  if (!contradicts) confirmed_ = pose;
+  before_doubt_ = contradicts ? confirmed_ : std::nullopt;
+}
+
+void MapConfirmation::move(const Similarity& new_world_S_old) {
+  for (std::optional<ConfirmedPose>* pose : {&confirmed_, &before_doubt_}) {
+    if (*pose) (*pose)->world_T_camera = moved(new_world_S_old, (*pose)->world_T_camera);
+  }
+}
+
+void MapConfirmation::forget() {
+  points_ = {};
+  confirmed_.reset();
+  before_doubt_.reset();
+}
+
+double MapConfirmation::positionVariance(const Pose& world_T_camera) const {
+  if (!before_doubt_) return 0;
+  return (world_T_camera.translation - before_doubt_->world_T_camera.translation).squaredNorm();
+}
+
+}  // namespace edgeslam
