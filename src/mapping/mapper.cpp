@@ -9,6 +9,16 @@
 #include "mapping/wheel_turn_check.h"
 
 namespace edgeslam {
+namespace {
+
+// Of recovered points, at least one, from the keyframe that hosts them [map units].
+double medianDistance(const std::vector<RecoveredPoint>& points) {
+  std::vector<double> inverse_depths;
+  for (const RecoveredPoint& point : points) inverse_depths.push_back(point.inverse_depth);
+  return 1 / upperMedian(inverse_depths);
+}
+
+}  // namespace
 
 void Mapper::goOnWith(Map map) {
   map_ = std::move(map);
@@ -256,11 +266,8 @@ RecoveryResult Mapper::recover(const TrackedFrame& lost) {
   const Keyframe& last = map_.keyframes[last_id];
   result = recoverTrackLoss(camera_, map_.keyframes[before], last, lost, options_.recovery);
   if (!result.found) return result;
-  std::vector<double> distances;
-  for (const RecoveredPoint& point : result.points) distances.push_back(1 / point.inverse_depth);
-  const NewPointOptions& new_points = options_.new_points;
-  const double scene = sceneDistance(map_, last, new_points.fewest_of_scene);
-  if (medianOr(scene, std::move(distances)) < new_points.least_distance * scene) {
+  const double scene = sceneDistance(map_, last, options_.new_points.fewest_of_scene);
+  if (medianDistance(result.points) < options_.new_points.least_distance * scene) {
     result.found = false;
     result.reason = "what was tracked seems far nearer than the scene: it moves";
     return result;

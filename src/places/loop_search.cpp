@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 
-#include "geometry/median.h"
 #include "places/thumbnail.h"
 #include "tracking/measured_noise.h"
 
@@ -83,14 +82,8 @@ std::vector<Pose> LoopSearch::starts(KeyframeId keyframe, const std::optional<Si
   const auto thumbnailOf = [&](const Keyframe& k) { return makeThumbnail(k.images->pyramid, camera_.mask.get()); };
   const ThumbnailMatch match = matchTurned(thumbnailOf(there), thumbnailOf(map_.keyframes[keyframe]));
   if (match.correlation < options_.least_correlation) return poses;
-  std::vector<double> distances;
-  for (const PointObservation& observation : there.observations) {
-    const auto point = map_.points.find(observation.point);
-    if (point == map_.points.end()) continue;
-    distances.push_back((worldPosition(map_, point->second) - there.world_T_camera.translation).norm());
-  }
-  if (distances.empty()) return poses;
-  const double distance = upperMedian(distances);
+  const double distance = sceneDistance(map_, there);
+  if (distance == 0) return poses;
   const Eigen::Quaterniond turn = rotationOf(camera_, match);
   for (const double forward : {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45}) add({turn, {0, 0, forward * distance}});
   return poses;

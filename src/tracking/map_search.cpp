@@ -128,13 +128,6 @@ FoundPoints findVisiblePoints(const SearchPoints& points, const VisiblePoints& v
   return found;
 }
 
-FoundPoints searchMapPoints(const Camera& camera, const SearchPoints& points, const FrameImages& current,
-                            const EdgeMap& edges, const MovingCamera& moving, const MapSearchOptions& options,
-                            std::pmr::memory_resource* memory) {
-  return findVisiblePoints(points, visiblePoints(camera, points, moving, options, memory), current, edges, options,
-                           memory);
-}
-
 Measurement measurementOf(const SearchPoint& point, const FoundPoint& found) {
   return {found.pixel.cast<double>(), found.normal.cast<double>(), point.sigma_normal, point.sigma_tangent};
 }

@@ -68,15 +68,11 @@ VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, co
                             const MapSearchOptions& options,
                             std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-// Those of the visible points whose patch is found, on an edge of `edges`, in the order of `visible`.
+// Those of the visible points whose patch is found, on an edge of `edges`, in the order of `visible`. The pose that
+// these are visible from may be wrong by what moves a point by the search radius in the image.
 FoundPoints findVisiblePoints(const SearchPoints& points, const VisiblePoints& visible, const FrameImages& current,
                               const EdgeMap& edges, const MapSearchOptions& options,
                               std::pmr::memory_resource* memory = std::pmr::get_default_resource());
-
-// Both in one. Its pose may be wrong by what moves a point by the search radius in the image.
-FoundPoints searchMapPoints(const Camera& camera, const SearchPoints& points, const FrameImages& current,
-                            const EdgeMap& edges, const MovingCamera& moving, const MapSearchOptions& options,
-                            std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // What a found point measures: the accuracy that its keyframe's patch had, carried over.
 Measurement measurementOf(const SearchPoint& point, const FoundPoint& found);

@@ -420,7 +420,7 @@ void Tracker::tell(Work& work) {
 void Tracker::tellDoubt(FrameResult& result) const {
   if (!confirmation_.lastBeforeDoubt()) return;
   result.world_covariance.topLeftCorner<3, 3>().diagonal().array() +=
-      confirmation_.positionVariance(frame_.world_T_camera);
+      confirmation_.positionVariance(result.world_T_camera);
   if (!result.reason.empty()) return;
   result.reason.assign("in doubt: of ").append(std::to_string(confirmation_.points().expected));
   result.reason.append(" map points that should be in view ");
@@ -475,6 +475,7 @@ void Tracker::predict(std::int64_t time_ns, std::string_view reason, FrameResult
   result.covariance = prediction.covariance;
   result.world_covariance = worldCovariance(camera_, withSharedNoise(result.covariance), map_covariance_,
                                             last_.outlier_share, options_.uncertainty);
+  tellDoubt(result);
   if (view_.keyframes.empty()) return;
   if (motion_.isKnownByInertia(prediction, last_, time_ns)) return goOnBy("inertia only", result);
   if (carriedByWheels(time_ns)) goOnBy("wheels only", result);

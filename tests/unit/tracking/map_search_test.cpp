@@ -10,6 +10,10 @@
 namespace edgeslam::test {
 namespace {
 
+FoundPoints search(const SearchPoints& points, const FrameImages& images, const EdgeMap& edges, const Pose& pose) {
+  return findVisiblePoints(points, visiblePoints(placeCamera(), points, pose, {}), images, edges, {});
+}
+
 constexpr double degree = M_PI / 180;
 
 struct Searched {
@@ -56,7 +60,7 @@ Found searchFrom(const Pose& truth, const Pose& guess, std::uint64_t seed = 7) {
   const FrameImages images = imagesOf(grey);
   Found result;
   result.visible = visiblePoints(placeCamera(), room().points, guess, {}).size();
-  for (const FoundPoint& found : searchMapPoints(placeCamera(), room().points, images, edges, guess, {})) {
+  for (const FoundPoint& found : search(room().points, images, edges, guess)) {
     const Eigen::Vector3d seen = truth.inverse() * room().points[found.index].position;
     const Eigen::Vector2f apart = found.pixel - project(placeCamera(), seen).cast<float>();
     ++result.found;
@@ -114,14 +118,14 @@ TEST(MapSearch, NormalsTurnWithTheImage) {
 
 TEST(MapSearch, EachPointOnceAndInOrder) {
   const cv::Mat grey = renderRoom(7, placeCamera(), Pose());
-  const auto found = searchMapPoints(placeCamera(), room().points, imagesOf(grey), detectEdges(grey, {}), Pose(), {});
+  const auto found = search(room().points, imagesOf(grey), detectEdges(grey, {}), Pose());
   ASSERT_FALSE(found.empty());
   for (std::size_t i = 1; i < found.size(); ++i) EXPECT_LT(found[i - 1].index, found[i].index);
 }
 
 TEST(MapSearch, AnImageWithoutEdgesHasNone) {
   const cv::Mat grey(240, 320, CV_8U, cv::Scalar(120));
-  EXPECT_TRUE(searchMapPoints(placeCamera(), room().points, imagesOf(grey), detectEdges(grey, {}), Pose(), {}).empty());
+  EXPECT_TRUE(search(room().points, imagesOf(grey), detectEdges(grey, {}), Pose()).empty());
 }
 
 }  // namespace
