@@ -52,11 +52,54 @@ RelativePose relativePoseOfCorners(const Camera& camera, const TrackedFrame& fir
   return relativePose(first_bearings, current_bearings, 1.0 / meanFocalLength(camera), /*seed=*/1);
 }
 
-// The pose of the current frame by the five-point algorithm, depths by triangulation, the poses of the frames between
-// by their points.
+// The frames' rotations, and how far the points moved beyond what these explain; none where too few are in common.
+std::vector<RelativeRotation> rotationsOf(const InitialFrames& frames, const std::vector<std::size_t>& chosen) {
+  constexpr std::size_t fewest_common = 8;
+  std::vector<RelativeRotation> rotations;
+  for (const std::size_t k : chosen) {
+    const CommonBearings bearings = commonBearings(frames.first, frames.since[k]);
+    if (bearings.in_first.size() < fewest_common) return {};
+    rotations.push_back(relativeRotation(bearings.in_first, bearings.in_other));
+  }
+  return rotations;
+}
+
+}  // namespace
+
+std::optional<InitialStart> withTriangulatedDepths(const Camera& camera, const InitialFrames& frames,
+                                                   InitialStart start) {
+  const TrackedFrame& first = frames.first;
+  std::vector<std::vector<TriangulationView>> views(first.observations.size());
+  for (std::size_t k = 0; k < start.frames.size(); ++k) {
+    const TrackedFrame& frame = frames.since[start.frames[k]];
+    forEachCommon(first, frame, [&](std::size_t i, std::size_t j) {
+      views[i].push_back({start.first_T_camera[k].inverse(), frame.observations[j].measurement});
+    });
+  }
+  start.inverse_depths.assign(first.observations.size(), 0.0);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].empty()) start.inverse_depths[i] = triangulatedInverseDepth(camera, first.observations[i], views[i]);
+  }
+  const std::optional<double> scale = bringMedianToOne(start.inverse_depths);
+  if (!scale) return std::nullopt;
+  for (Pose& pose : start.first_T_camera) pose.translation *= *scale;
+  return start;
+}
+
+InitialStart followedStart(const InitialFrames& frames, const std::vector<double>& provisional_inverse_depths,
+                           const InitialisationOptions& options) {
+  InitialStart start = startOf("flat start", frames, options);
+  for (const std::size_t frame : start.frames) start.first_T_camera.push_back(frames.since[frame].world_T_camera);
+  start.inverse_depths = provisional_inverse_depths;
+  return start;
+}
+
 std::optional<InitialStart> fivePointStart(const Camera& camera, const InitialFrames& frames,
                                            const InitialisationOptions& options) {
   const TrackedFrame &first = frames.first, &current = frames.current();
+  const std::vector<PointObservation>& seen = current.observations;
+  const auto corners = std::count_if(seen.begin(), seen.end(), [](const PointObservation& o) { return o.corner; });
+  if (corners < options.five_point_corners) return std::nullopt;
   const RelativePose relative = relativePoseOfCorners(camera, first, current);
   if (!relative.found) return std::nullopt;
 
@@ -83,61 +126,30 @@ std::optional<InitialStart> fivePointStart(const Camera& camera, const InitialFr
   return start;
 }
 
-// A camera that moved steadily in one direction (unit, of the first frame's camera), turning as the points' bearings
-// say; depths by triangulation.
-std::optional<InitialStart> steadyMotionStart(const Camera& camera, const InitialFrames& frames,
-                                              const Eigen::Vector3d& direction, const char* name,
-                                              const InitialisationOptions& options) {
-  constexpr std::size_t fewest_common = 8;
-  const TrackedFrame& first = frames.first;
-  InitialStart start = startOf(std::string(name) + " start", frames, options);
-  std::vector<std::vector<TriangulationView>> views(first.observations.size());
-  for (const std::size_t k : start.frames) {
-    const TrackedFrame& frame = frames.since[k];
-    const CommonBearings bearings = commonBearings(first, frame);
-    if (bearings.in_first.size() < fewest_common) return std::nullopt;
-    const RelativeRotation rotation = relativeRotation(bearings.in_first, bearings.in_other);
-    // As far as the points moved beyond what the rotation explains; the unit comes from the depths below.
-    const Pose first_T_camera{rotation.rotation.conjugate(), rotation.median_error * direction};
-    start.first_T_camera.push_back(first_T_camera);
-    forEachCommon(first, frame, [&](std::size_t i, std::size_t j) {
-      views[i].push_back({first_T_camera.inverse(), frame.observations[j].measurement});
-    });
-  }
-  start.inverse_depths.assign(first.observations.size(), 0.0);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!views[i].empty()) start.inverse_depths[i] = triangulatedInverseDepth(camera, first.observations[i], views[i]);
-  }
-  const std::optional<double> scale = bringMedianToOne(start.inverse_depths);
-  if (!scale) return std::nullopt;
-  for (Pose& pose : start.first_T_camera) pose.translation *= *scale;
-  return start;
-}
-
-}  // namespace
-
-InitialStart followedStart(const InitialFrames& frames, const std::vector<double>& provisional_inverse_depths,
-                           const InitialisationOptions& options) {
-  InitialStart start = startOf("flat start", frames, options);
-  for (const std::size_t frame : start.frames) start.first_T_camera.push_back(frames.since[frame].world_T_camera);
-  start.inverse_depths = provisional_inverse_depths;
-  return start;
-}
-
-std::vector<InitialStart> rivalStarts(const Camera& camera, const InitialFrames& frames,
-                                      const InitialisationOptions& options) {
-  std::vector<InitialStart> starts;
-  const auto add = [&](std::optional<InitialStart> start) {
-    if (start) starts.push_back(std::move(*start));
+std::vector<InitialStart> steadyMotionStarts(const Camera& camera, const InitialFrames& frames,
+                                             const InitialisationOptions& options) {
+  struct Motion {
+    const char* name;
+    Eigen::Vector3d direction;
   };
-  const std::vector<PointObservation>& seen = frames.current().observations;
-  const auto corners = std::count_if(seen.begin(), seen.end(), [](const PointObservation& o) { return o.corner; });
-  if (corners >= options.five_point_corners) add(fivePointStart(camera, frames, options));
-  add(steadyMotionStart(camera, frames, {0, 0, 1}, "forward", options));
-  add(steadyMotionStart(camera, frames, {1, 0, 0}, "rightward", options));
-  add(steadyMotionStart(camera, frames, {-1, 0, 0}, "leftward", options));
-  add(steadyMotionStart(camera, frames, {0, 1, 0}, "downward", options));
-  add(steadyMotionStart(camera, frames, {0, -1, 0}, "upward", options));
+  const Motion motions[] = {{"forward", {0, 0, 1}},
+                            {"rightward", {1, 0, 0}},
+                            {"leftward", {-1, 0, 0}},
+                            {"downward", {0, 1, 0}},
+                            {"upward", {0, -1, 0}}};
+  std::vector<InitialStart> starts;
+  const std::vector<std::size_t> chosen = startOf("", frames, options).frames;
+  const std::vector<RelativeRotation> rotations = rotationsOf(frames, chosen);
+  if (rotations.empty()) return starts;
+  for (const auto& [name, direction] : motions) {
+    InitialStart start = startOf(std::string(name) + " start", frames, options);
+    for (const RelativeRotation& rotation : rotations) {
+      // As far as the points moved beyond what the rotation explains; the unit comes from the depths.
+      start.first_T_camera.push_back({rotation.rotation.conjugate(), rotation.median_error * direction});
+    }
+    std::optional<InitialStart> whole = withTriangulatedDepths(camera, frames, std::move(start));
+    if (whole) starts.push_back(std::move(*whole));
+  }
   return starts;
 }
 

@@ -1,6 +1,7 @@
 #include "mapping/initialisation.h"
 
 #include "mapping/initial_map.h"
+#include "mapping/initial_rivals.h"
 #include "mapping/initial_starts.h"
 
 namespace edgeslam {
@@ -34,7 +35,8 @@ bool Initialisation::add(const TrackedFrame& frame) {
   }
 
   // P14: poses and points, adjusted together.
-  std::optional<InitialStructure> structure = adjusted(followedStart(frames_, inverse_depths_, options_));
+  std::optional<InitialStructure> structure =
+      adjustInitialStructure(camera_, frames_, followedStart(frames_, inverse_depths_, options_), options_);
   if (!structure) {
     waiting_for_ = "the adjustment of the first frames failed";
     return false;
@@ -43,9 +45,7 @@ bool Initialisation::add(const TrackedFrame& frame) {
   // P13 and P15: parallax, points and the quality factor.
   InitialEvidence evidence = judge(*structure);
   if (reasonToWait(evidence, options_).empty()) {
-    // A structure of lines can stand wrong and look well: before it is believed, others from quite different starts
-    // must fit the same measurements worse. Most of them fall into the same solution where that is the right one.
-    structure = bestOf(std::move(*structure), rivalStarts(camera_, frames_, options_));
+    structure = bestOfRivals(camera_, frames_, std::move(*structure), options_);
     evidence = judge(*structure);
   }
   goOnFrom(*structure);
@@ -63,18 +63,6 @@ bool Initialisation::isDue() const {
   const auto left = static_cast<double>(frames_.current().observations.size());
   if (left < options_.fading_share * points) return true;
   return frames_.since.size() % static_cast<std::size_t>(options_.attempt_interval) == 0;
-}
-
-std::optional<InitialStructure> Initialisation::adjusted(InitialStart start) const {
-  return adjustInitialStructure(camera_, frames_, std::move(start), options_);
-}
-
-InitialStructure Initialisation::bestOf(InitialStructure best, std::vector<InitialStart> rivals) const {
-  for (InitialStart& start : rivals) {
-    std::optional<InitialStructure> rival = adjusted(std::move(start));
-    if (rival && rival->error < best.error) best = std::move(*rival);
-  }
-  return best;
 }
 
 InitialEvidence Initialisation::judge(const InitialStructure& structure) const {

@@ -50,8 +50,6 @@ class Initialisation {
 
  private:
   bool isDue() const;
-  std::optional<InitialStructure> adjusted(InitialStart start) const;
-  InitialStructure bestOf(InitialStructure best, std::vector<InitialStart> rivals) const;
   InitialEvidence judge(const InitialStructure& structure) const;
   void goOnFrom(const InitialStructure& structure);
   std::string describe(const InitialStructure& structure, const InitialEvidence& evidence) const;

@@ -20,7 +20,12 @@ struct InitialisationOptions {
   double point_share = 0.4;           // ... or this share of those followed, where the scene has less
   double outlier = 3.0;               // whitened error of an observation
   int five_point_corners = 50;        // corner-like points from which on the five-point start is tried as well
-  double least_quality = 0.6;         // share of the pieces that must hold (P15)
+  // Rivals are adjusted with about so many points first. Those whose error is below this ratio to the least one are
+  // then adjusted with all, at most so many of them.
+  int screened_points = 100;
+  double screened_error_ratio = 1.1;
+  int most_rivals = 2;
+  double least_quality = 0.6;  // share of the pieces that must hold (P15)
   // Of a start from fewer frames than from one attempt to the next; little speaks against such a one, so more must for
   // it.
   double early_quality = 0.75;

@@ -42,12 +42,12 @@ TEST(InitialStarts, TheFollowedStartIsWhatTrackingSays) {
 TEST(InitialStarts, TheFivePointStartFindsAnyDirection) {
   const Eigen::Vector3d direction = Eigen::Vector3d(0.6, -0.5, 0.3).normalized();
   InitialisationOptions options;
-  const std::vector<InitialStart> starts = rivalStarts(camera, framesTowards(direction), options);
-  const InitialStart* start = named(starts, "five-point");
-  ASSERT_NE(start, nullptr);
+  const std::optional<InitialStart> start = fivePointStart(camera, framesTowards(direction), options);
+  ASSERT_TRUE(start);
+  EXPECT_EQ(start->method, "five-point");
   EXPECT_LT(directionError(*start, direction), 0.01);
   options.five_point_corners = 1000;
-  EXPECT_EQ(named(rivalStarts(camera, framesTowards(direction), options), "five-point"), nullptr);
+  EXPECT_FALSE(fivePointStart(camera, framesTowards(direction), options));
 }
 
 TEST(InitialStarts, SteadyMotionsGoAlongTheAxes) {
@@ -57,7 +57,7 @@ TEST(InitialStarts, SteadyMotionsGoAlongTheAxes) {
                                                                            {"upward start", {0, -1, 0}}};
   for (const auto& [name, direction] : directions) {
     const InitialFrames frames = framesTowards(direction);
-    const std::vector<InitialStart> starts = rivalStarts(camera, frames, InitialisationOptions());
+    const std::vector<InitialStart> starts = steadyMotionStarts(camera, frames, InitialisationOptions());
     const InitialStart* start = named(starts, name);
     ASSERT_NE(start, nullptr) << name;
     EXPECT_LT(directionError(*start, direction), 1e-6) << name;
@@ -68,10 +68,28 @@ TEST(InitialStarts, SteadyMotionsGoAlongTheAxes) {
   }
 }
 
+TEST(InitialStarts, DepthsFollowFromTheMotion) {
+  const InitialFrames frames = framesTowards({1, 0, 0});
+  const std::vector<double> unknown(frames.first.observations.size(), 0);
+  InitialStart start = followedStart(frames, unknown, InitialisationOptions());
+  const std::optional<InitialStart> found = withTriangulatedDepths(camera, frames, start);
+  ASSERT_TRUE(found);
+  const test::EdgeScene scene = test::framesOnAWall(2);
+  const double scale = found->first_T_camera.back().translation.x() / start.first_T_camera.back().translation.x();
+  for (std::size_t i = 0; i < unknown.size(); ++i) {
+    const auto point = static_cast<std::size_t>(frames.first.observations[i].point);
+    if (found->inverse_depths[i] == 1) continue;  // too little is known of it
+    EXPECT_NEAR(scale * found->inverse_depths[i] * scene.points[point].position.norm(), 1, 0.02) << i;
+  }
+  for (Pose& pose : start.first_T_camera) pose.translation.setZero();
+  EXPECT_FALSE(withTriangulatedDepths(camera, frames, start));
+}
+
 TEST(InitialStarts, ThereIsNoneWithoutPointsInCommon) {
   InitialFrames frames = framesTowards({1, 0, 0});
   for (TrackedFrame& frame : frames.since) frame.observations.clear();
-  EXPECT_TRUE(rivalStarts(camera, frames, InitialisationOptions()).empty());
+  EXPECT_FALSE(fivePointStart(camera, frames, InitialisationOptions()));
+  EXPECT_TRUE(steadyMotionStarts(camera, frames, InitialisationOptions()).empty());
 }
 
 }  // namespace
