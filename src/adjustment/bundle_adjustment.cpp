@@ -7,6 +7,7 @@
 #include "adjustment/bundle_inertia.h"
 #include "adjustment/bundle_lines.h"
 #include "adjustment/bundle_minimization.h"
+#include "geometry/median.h"
 
 namespace edgeslam {
 namespace {
@@ -24,6 +25,8 @@ bool indicesInRange(const BundleProblem& problem) {
   const int cameras = static_cast<int>(problem.cameras.size()), points = static_cast<int>(problem.points.size());
   const int lines = static_cast<int>(problem.lines.size());
   if (problem.scale_camera >= cameras) return false;
+  const auto inRange = [&](int camera) { return camera >= 0 && camera < cameras; };
+  if (!std::all_of(problem.scale_cameras.begin(), problem.scale_cameras.end(), inRange)) return false;
   for (const BundlePoint& p : problem.points) {
     if (p.host < 0 || p.host >= cameras) return false;
   }
@@ -33,7 +36,6 @@ bool indicesInRange(const BundleProblem& problem) {
   for (const BundleLineObservation& o : problem.line_observations) {
     if (o.camera < 0 || o.camera >= cameras || o.line < 0 || o.line >= lines) return false;
   }
-  const auto inRange = [&](int camera) { return camera >= 0 && camera < cameras; };
   for (const BundleTurn& t : problem.turns) {
     if (!inRange(t.first) || !inRange(t.second)) return false;
   }
@@ -115,16 +117,26 @@ void assess(const Camera& camera, const BundleProblem& problem, double huber, Bu
   assessLines(camera, problem, huber, result);
 }
 
-// Brings the scale camera back to its distance from camera 0 by scaling centres and lines about camera 0 and depths
-// with them and their priors, which changes no residual. Where another camera, a point or a line is fixed, that
-// holds the scale already. False where the distance has collapsed.
-bool keepScale(const std::vector<BundleCamera>& before, BundleProblem& problem) {
-  const auto distance = [&](const std::vector<BundleCamera>& cameras) {
-    return (cameras[at(problem.scale_camera)].world_T_camera.translation - cameras[0].world_T_camera.translation)
-        .norm();
+// How many times as far from camera 0 the cameras were that hold the scale; 0 where they have collapsed.
+double scaleToKeep(const std::vector<BundleCamera>& before, const BundleProblem& problem) {
+  const auto distance = [](const std::vector<BundleCamera>& cameras, int camera) {
+    return (cameras[at(camera)].world_T_camera.translation - cameras[0].world_T_camera.translation).norm();
   };
+  std::vector<double> ratios;
+  const std::vector<int> only{problem.scale_camera};
+  for (const int camera : problem.scale_cameras.empty() ? only : problem.scale_cameras) {
+    const double now = distance(problem.cameras, camera);
+    if (now > 0) ratios.push_back(distance(before, camera) / now);
+  }
+  return medianOr(0.0, ratios);
+}
+
+// Brings the cameras back to their distance from camera 0 by scaling centres and lines about it and depths with them
+// and their priors, which changes no residual. Where another camera, a point or a line is fixed, that holds the scale
+// already. False where the distance has collapsed.
+bool keepScale(const std::vector<BundleCamera>& before, BundleProblem& problem) {
   const Eigen::Vector3d origin = problem.cameras[0].world_T_camera.translation;
-  const double scale = distance(before) / distance(problem.cameras);
+  const double scale = scaleToKeep(before, problem);
   if (!(scale > 1e-6 && scale < 1e6)) return false;
   for (std::size_t i = 1; i < problem.cameras.size(); ++i) {
     Eigen::Vector3d& centre = problem.cameras[i].world_T_camera.translation;

@@ -125,6 +125,9 @@ struct BundleProblem {
   // a line is fixed, as that holds the scale. Speed changes and ways then tell how the scale differs from place to
   // place.
   int scale_camera = -1;
+  // The distances of these are kept instead, where there are any, as the median of them says: one camera that only now
+  // finds its place would scale all others.
+  std::vector<int> scale_cameras;
 };
 
 struct BundleOptions {

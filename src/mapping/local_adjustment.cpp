@@ -78,6 +78,20 @@ int farthestFromFirst(const std::vector<BundleCamera>& cameras) {
   return farthest;
 }
 
+// At least half as far from the first as that one is.
+std::vector<int> farFromFirst(const std::vector<BundleCamera>& cameras, int farthest) {
+  const auto distance = [&](int camera) {
+    return (cameras[static_cast<std::size_t>(camera)].world_T_camera.translation -
+            cameras.front().world_T_camera.translation)
+        .norm();
+  };
+  std::vector<int> far;
+  for (int camera = 1; camera < static_cast<int>(cameras.size()); ++camera) {
+    if (distance(camera) >= 0.5 * distance(farthest)) far.push_back(camera);
+  }
+  return far;
+}
+
 // Where most of the points that the latest keyframe sees are on lines: all keyframes that see one of the lines which
 // the given ones see. Else none.
 std::vector<KeyframeId> allThatSeeTheLines(const LineOptions& options, const Map& map,
@@ -160,7 +174,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   std::vector<KeyframeId> ordered_free = free;
   std::sort(ordered_free.begin(), ordered_free.end());
   // A world's first keyframe is its origin and never moves. With nothing else to hold it, the oldest keyframe holds the
-  // pose and the distance of the one farthest from it the scale.
+  // pose and the distances of those far from it the scale.
   const bool hold_oldest = fixed.empty();
   const KeyframeId origin = firstKeyframeOf(map, map.keyframes[ordered_free.front()].world);
   for (const KeyframeId keyframe : ordered_free) {
@@ -168,7 +182,10 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   }
   const std::vector<PointId> points = pointsSeenBy(map, camera_of);
   for (const KeyframeId keyframe : fixed) addCamera(keyframe, true);
-  if (hold_oldest) problem.scale_camera = farthestFromFirst(problem.cameras);
+  if (hold_oldest) {
+    problem.scale_camera = farthestFromFirst(problem.cameras);
+    problem.scale_cameras = farFromFirst(problem.cameras, problem.scale_camera);
+  }
 
   const auto cameraOf = [&](KeyframeId keyframe) {
     if (camera_of[static_cast<std::size_t>(keyframe)] < 0) addCamera(keyframe, true);

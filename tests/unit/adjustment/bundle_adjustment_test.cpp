@@ -59,6 +59,30 @@ TEST_P(BundleAdjustmentOfModel, KeepsTheScaleWhereOnlyOneCameraIsFixed) {
   }
 }
 
+// One of the cameras is not where it should be: it finds its place, and the others do not move.
+TEST_P(BundleAdjustmentOfModel, OneOfManyCamerasThatHoldTheScaleDoesNotChangeIt) {
+  Random random(22);
+  BundleSceneOptions options;
+  options.model = GetParam();
+  options.fixed = 1;
+  const BundleScene scene = makeBundleScene(random, options);
+  for (const bool median : {false, true}) {
+    BundleProblem problem = scene.truth;
+    BundleCamera& wrong = problem.cameras[5];
+    const Eigen::Vector3d origin = problem.cameras[0].world_T_camera.translation;
+    wrong.world_T_camera.translation = origin + 0.9 * (wrong.world_T_camera.translation - origin);
+    problem.scale_camera = 5;
+    if (median) problem.scale_cameras = {1, 2, 3, 4, 5};
+    ASSERT_TRUE(adjustBundle(scene.camera, problem, manyIterations()).usable);
+    const double error = largestTranslationError(problem, scene.truth);
+    if (median) {
+      EXPECT_LT(error, 1e-6);
+    } else {
+      EXPECT_GT(error, 0.01);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, BundleAdjustmentOfModel,
                          testing::Values(CameraModel::pinhole_radial_tangential, CameraModel::kannala_brandt));
 

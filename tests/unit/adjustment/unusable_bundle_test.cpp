@@ -28,12 +28,13 @@ TEST(UnusableBundle, IndicesOutOfRangeLeaveTheProblem) {
   const BundleScene scene = makeBundleScene(random, {});
   const BundleProblem good = perturbedProblem(random, scene.truth, 0.05, 0.02);
   for (const int bad : {-1, 1000000}) {
-    for (int what = 0; what < 4; ++what) {
+    for (int what = 0; what < 5; ++what) {
       BundleProblem problem = good;
       if (what == 0) problem.observations[3].camera = bad;
       if (what == 1) problem.observations[3].point = bad;
       if (what == 2) problem.points[3].host = bad;
       if (what == 3) problem.scale_camera = 1000000;
+      if (what == 4) problem.scale_cameras = {1, bad};
       const BundleResult result = adjustBundle(scene.camera, problem, {});
       EXPECT_FALSE(result.usable);
       EXPECT_TRUE(sameBytes(problem, good));
