@@ -86,8 +86,7 @@ class RollingShutter {
   bool is_tied_;
 };
 
-// The robust cost at a pose and its normal equations. Beyond Huber's threshold the cost has no curvature along the
-// residual: with that left out (`newton`) a few steps do where reweighting alone takes a dozen.
+// The robust cost at a pose and its normal equations, weights frozen at that pose.
 struct NormalEquations {
   double cost = 0;
   Matrix6d information = Matrix6d::Zero();
@@ -95,7 +94,7 @@ struct NormalEquations {
 };
 
 template <typename Shutter>
-NormalEquations linearize(const Shutter& shutter, const PreparedObservations& observations, double huber, bool newton,
+NormalEquations linearize(const Shutter& shutter, const PreparedObservations& observations, double huber,
                           double behind_norm) {
   const double behind_cost = huberLoss(behind_norm * behind_norm, huber);
   NormalEquations equations;
@@ -114,10 +113,8 @@ NormalEquations linearize(const Shutter& shutter, const PreparedObservations& ob
     equations.cost += huberLoss(squared_norm, huber);
     const double weight = huberWeight(std::sqrt(squared_norm), huber);
     const Matrix26d weighted = weight * jacobian;
-    const Vector6d pull = weighted.transpose() * residual;
     equations.information.noalias() += weighted.transpose() * jacobian;
-    equations.gradient += pull;
-    if (newton && weight < 1) equations.information.noalias() -= pull * (pull.transpose() / (weight * squared_norm));
+    equations.gradient.noalias() += weighted.transpose() * residual;
   }
   return equations;
 }
@@ -149,8 +146,8 @@ void addPrior(const PositionPrior& prior, const Pose& world_T_camera, NormalEqua
   equations.gradient.head<3>() += world_T_camera.rotation.conjugate() * pull;
 }
 
-// Levenberg's minimisation. While far from the solution Huber's threshold is wide, so that a prediction several pixels
-// off does not make every observation an outlier.
+// Levenberg's minimisation with the weights renewed at every step. While far from the solution Huber's threshold is
+// wide, so that a prediction several pixels off does not make every observation an outlier.
 // `shutterAt`: gives the residuals of a camera with a pose.
 template <typename ShutterAt>
 bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observations, const PositionPrior& prior,
@@ -159,15 +156,13 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
   constexpr double wide_factor = 5;
   constexpr double least_damping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
   constexpr double most_damping = 1e2;
-  constexpr double converged_step = 1e-2;  // standard deviations of the pose, so that it is free of scale
   // A point behind the camera costs what an error of this whitened norm does; so does anything worse, without pulling.
   constexpr double norm_behind_camera = 1e4;
 
-  bool newton = false;
   double huber = options.huber * wide_factor;
   double damping = least_damping;
   const auto equationsAt = [&](const Pose& at) {
-    NormalEquations equations = linearize(shutterAt(at), observations, huber, newton, norm_behind_camera);
+    NormalEquations equations = linearize(shutterAt(at), observations, huber, norm_behind_camera);
     addPrior(prior, at, equations);
     return equations;
   };
@@ -175,25 +170,21 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     if (iteration == wide_iterations) {
       huber = options.huber;
-      newton = true;
       equations = equationsAt(pose);
     }
     bool accepted = false, small = false;
     while (!accepted && damping <= most_damping) {
       Vector6d step;
-      const bool is_solved = solveDamped(equations, damping, step);
-      if (!is_solved && !newton) return false;
-      small = is_solved && step.dot(equations.information * step) < converged_step * converged_step;
-      const Pose candidate = is_solved ? retract(pose, step) : pose;
+      if (!solveDamped(equations, damping, step)) return false;
+      // In units of the pose's own standard deviation, so free of scale.
+      small = step.dot(equations.information * step) < 1e-8;
+      const Pose candidate = retract(pose, step);
       const NormalEquations at_candidate = equationsAt(candidate);
-      accepted = is_solved && at_candidate.cost <= equations.cost;
+      accepted = at_candidate.cost <= equations.cost;
       if (accepted) {
         pose = candidate;
         equations = at_candidate;
         damping = std::max(least_damping, 0.1 * damping);
-      } else if (newton) {  // too far off for it
-        newton = false;
-        equations = equationsAt(pose);
       } else {
         if (small) break;
         damping = damping * 30;
