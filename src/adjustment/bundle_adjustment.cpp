@@ -117,18 +117,21 @@ void assess(const Camera& camera, const BundleProblem& problem, double huber, Bu
   assessLines(camera, problem, huber, result);
 }
 
-// How many times as far from camera 0 the cameras were that hold the scale; 0 where they have collapsed.
+// How many times as far from camera 0 the scale camera was, or, where the median of those that hold the scale beside it
+// says otherwise, that. 0 where they have collapsed.
 double scaleToKeep(const std::vector<BundleCamera>& before, const BundleProblem& problem) {
-  const auto distance = [](const std::vector<BundleCamera>& cameras, int camera) {
-    return (cameras[at(camera)].world_T_camera.translation - cameras[0].world_T_camera.translation).norm();
+  constexpr double largest_difference = 0.02;  // share
+  const auto ratio = [&](int camera) {
+    const auto distance = [&](const std::vector<BundleCamera>& cameras) {
+      return (cameras[at(camera)].world_T_camera.translation - cameras[0].world_T_camera.translation).norm();
+    };
+    const double now = distance(problem.cameras);
+    return now > 0 ? distance(before) / now : 0.0;
   };
   std::vector<double> ratios;
-  const std::vector<int> only{problem.scale_camera};
-  for (const int camera : problem.scale_cameras.empty() ? only : problem.scale_cameras) {
-    const double now = distance(problem.cameras, camera);
-    if (now > 0) ratios.push_back(distance(before, camera) / now);
-  }
-  return medianOr(0.0, ratios);
+  for (const int camera : problem.scale_cameras) ratios.push_back(ratio(camera));
+  const double own = ratio(problem.scale_camera), median = medianOr(own, ratios);
+  return std::abs(own - median) > largest_difference * median ? median : own;
 }
 
 // Brings the cameras back to their distance from camera 0 by scaling centres and lines about it and depths with them

@@ -125,8 +125,8 @@ struct BundleProblem {
   // a line is fixed, as that holds the scale. Speed changes and ways then tell how the scale differs from place to
   // place.
   int scale_camera = -1;
-  // The distances of these are kept instead, where there are any, as the median of them says: one camera that only now
-  // finds its place would scale all others.
+  // Where the median of these says otherwise, their distances are kept: a scale camera that only now finds its place
+  // would scale all others.
   std::vector<int> scale_cameras;
 };
 
