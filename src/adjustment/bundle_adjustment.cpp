@@ -15,6 +15,8 @@ namespace {
 // Inverse depths below 0 are points beyond infinity, where the residual goes on smoothly: they are let through while
 // adjusting, and end here.
 constexpr double least_inverse_depth = 1e-6;
+// Share by which the scale camera may differ from the others that hold the scale.
+constexpr double largest_scale_difference = 0.02;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
@@ -120,7 +122,6 @@ void assess(const Camera& camera, const BundleProblem& problem, double huber, Bu
 // How many times as far from camera 0 the scale camera was, or, where the median of those that hold the scale beside it
 // says otherwise, that. 0 where they have collapsed.
 double scaleToKeep(const std::vector<BundleCamera>& before, const BundleProblem& problem) {
-  constexpr double largest_difference = 0.02;  // share
   const auto ratio = [&](int camera) {
     const auto distance = [&](const std::vector<BundleCamera>& cameras) {
       return (cameras[at(camera)].world_T_camera.translation - cameras[0].world_T_camera.translation).norm();
@@ -131,7 +132,7 @@ double scaleToKeep(const std::vector<BundleCamera>& before, const BundleProblem&
   std::vector<double> ratios;
   for (const int camera : problem.scale_cameras) ratios.push_back(ratio(camera));
   const double own = ratio(problem.scale_camera), median = medianOr(own, ratios);
-  return std::abs(own - median) > largest_difference * median ? median : own;
+  return std::abs(own - median) > largest_scale_difference * median ? median : own;
 }
 
 // Brings the cameras back to their distance from camera 0 by scaling centres and lines about it and depths with them

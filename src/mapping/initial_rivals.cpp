@@ -26,10 +26,13 @@ std::vector<T> everyNth(const std::vector<T>& all, std::size_t step) {
 class Screening {
  public:
   Screening(const Camera& camera, const InitialFrames& frames, const InitialisationOptions& options)
-      : camera_(camera), options_(options), frames_(frames) {
+      : camera_(camera), options_(options) {
     const std::vector<PointObservation>& points = frames.first.observations;
     step_ = std::max<std::size_t>(1, points.size() / static_cast<std::size_t>(options.screened_points));
+    frames_.first = frames.first;
     frames_.first.observations = everyNth(points, step_);
+    frames_.since.resize(frames.since.size());
+    for (const std::size_t k : spreadFrames(frames, options.frames_between + 1)) frames_.since[k] = frames.since[k];
   }
 
   const InitialFrames& frames() const { return frames_; }
@@ -47,7 +50,7 @@ class Screening {
  private:
   const Camera& camera_;
   const InitialisationOptions& options_;
-  InitialFrames frames_;
+  InitialFrames frames_;  // of those since the first, which may be many, only those that a start has
   std::size_t step_;
 };
 

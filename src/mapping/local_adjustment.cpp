@@ -78,7 +78,7 @@ int farthestFromFirst(const std::vector<BundleCamera>& cameras) {
   return farthest;
 }
 
-// At least half as far from the first as that one is.
+// Those at least half as far from the first as the farthest, itself among them.
 std::vector<int> farFromFirst(const std::vector<BundleCamera>& cameras, int farthest) {
   const auto distance = [&](int camera) {
     return (cameras[static_cast<std::size_t>(camera)].world_T_camera.translation -
@@ -174,7 +174,7 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   std::vector<KeyframeId> ordered_free = free;
   std::sort(ordered_free.begin(), ordered_free.end());
   // A world's first keyframe is its origin and never moves. With nothing else to hold it, the oldest keyframe holds the
-  // pose and the distances of those far from it the scale.
+  // pose, and the one farthest from it the scale, for as long as the others that are far agree.
   const bool hold_oldest = fixed.empty();
   const KeyframeId origin = firstKeyframeOf(map, map.keyframes[ordered_free.front()].world);
   for (const KeyframeId keyframe : ordered_free) {

@@ -59,7 +59,8 @@ double meanError(const ReplayedRun& result, const std::string& sequence) {
       .translation.rmse;
 }
 
-// The largest error varies from 0.05 to 0.155 m with a threshold that should not matter.
+// With a threshold that should not matter the largest error varies from 0.05 to 0.155 m, and the mean from 0.4 to 0.7
+// of that without the readout.
 constexpr double largest_of_rolling_m = 0.18;
 
 TEST(RoughCamera, RowsThatAreReadOneAfterAnother) {
