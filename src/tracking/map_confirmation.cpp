@@ -4,8 +4,11 @@ namespace edgeslam {
 
 void MapConfirmation::observe(const PointsConfirmed& points, const ConfirmedPose& pose) {
   points_ = points;
-  const bool contradicts =
-      points.expected >= options_.fewest_expected && points.confirmed < options_.least_share * points.expected;
+  const bool says_something = points.expected >= options_.fewest_expected;
+  const bool is_suspect = before_doubt_ || is_unproven_;
+  const double least = is_suspect ? options_.least_share_to_believe_again : options_.least_share;
+  const bool contradicts = says_something ? points.confirmed < least * points.expected : before_doubt_.has_value();
+  if (says_something && !contradicts) is_unproven_ = false;
   if (!contradicts) confirmed_ = pose;
   before_doubt_ = contradicts ? confirmed_ : std::nullopt;
 }
@@ -18,6 +21,7 @@ void MapConfirmation::move(const Similarity& new_world_S_old) {
 
 void MapConfirmation::forget() {
   points_ = {};
+  is_unproven_ = false;
   confirmed_.reset();
   before_doubt_.reset();
 }

@@ -14,7 +14,10 @@ namespace edgeslam {
 
 struct MapConfirmationOptions {
   int fewest_expected = 60;   // points: of fewer the share says nothing
-  double least_share = 0.15;  // of the points expected that must be confirmed
+  double least_share = 0.15;  // of the points expected that must be confirmed ...
+  // ... and where the pose before was in doubt, or where tracking lost the camera and found it again. A few points by
+  // chance must not end the search for a pose in doubt.
+  double least_share_to_believe_again = 0.3;
 };
 
 // Of a frame. Points count that were hosted some keyframes ago.
@@ -33,6 +36,9 @@ struct ConfirmedPose {
 class MapConfirmation {
  public:
   explicit MapConfirmation(const MapConfirmationOptions& options) : options_(options) {}
+
+  // Tracking found the camera again: the map is yet to bear that out.
+  void askForProof() { is_unproven_ = true; }
 
   // A frame that the map's points were looked for in.
   void observe(const PointsConfirmed& points, const ConfirmedPose& pose);
@@ -53,6 +59,7 @@ class MapConfirmation {
   PointsConfirmed points_;
   std::optional<ConfirmedPose> confirmed_;
   std::optional<ConfirmedPose> before_doubt_;
+  bool is_unproven_ = false;
 };
 
 }  // namespace edgeslam

@@ -403,7 +403,10 @@ Matrix6d Tracker::withSharedNoise(const Matrix6d& covariance) const {
 }
 
 void Tracker::remember() {
-  if (is_lost_) preparation_.forgetSharpness();
+  if (is_lost_) {
+    preparation_.forgetSharpness();
+    confirmation_.askForProof();
+  }
   is_lost_ = false;
   beFound();
   last_was_found_again_ = false;

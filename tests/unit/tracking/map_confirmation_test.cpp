@@ -6,7 +6,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr PointsConfirmed borne_out{200, 160}, contradicted{200, 10}, few{40, 0};
+constexpr PointsConfirmed borne_out{200, 160}, contradicted{200, 10}, hardly_borne_out{200, 40}, few{40, 0};
 
 ConfirmedPose at(double x, KeyframeId keyframe) {
   return {{Eigen::Quaterniond::Identity(), {x, 0, 0}}, 1'000'000 * keyframe, keyframe};
@@ -43,6 +43,40 @@ TEST(MapConfirmation, OfFewPointsTheShareSaysNothing) {
   confirmation.observe(contradicted, at(3, 5));
   ASSERT_TRUE(confirmation.lastBeforeDoubt());
   EXPECT_EQ(confirmation.lastBeforeDoubt()->keyframe, 4);
+}
+
+TEST(MapConfirmation, AFewPointsByChanceBeginNoDoubtAndEndNone) {
+  MapConfirmation confirmation{MapConfirmationOptions()};
+  confirmation.observe(borne_out, at(1, 3));
+  confirmation.observe(hardly_borne_out, at(2, 4));
+  EXPECT_FALSE(confirmation.lastBeforeDoubt());
+  confirmation.observe(contradicted, at(3, 5));
+  confirmation.observe(hardly_borne_out, at(4, 6));
+  confirmation.observe(few, at(5, 7));
+  ASSERT_TRUE(confirmation.lastBeforeDoubt());
+  EXPECT_EQ(confirmation.lastBeforeDoubt()->keyframe, 4);
+  confirmation.observe(borne_out, at(6, 8));
+  EXPECT_FALSE(confirmation.lastBeforeDoubt());
+}
+
+TEST(MapConfirmation, ACameraThatWasFoundAgainIsBelievedOnceMuchOfTheMapIsSeen) {
+  MapConfirmation confirmation{MapConfirmationOptions()};
+  confirmation.observe(borne_out, at(1, 3));
+  confirmation.askForProof();
+  confirmation.observe(hardly_borne_out, at(2, 4));
+  ASSERT_TRUE(confirmation.lastBeforeDoubt());
+  EXPECT_EQ(confirmation.lastBeforeDoubt()->keyframe, 3);
+  confirmation.observe(borne_out, at(3, 5));
+  confirmation.observe(hardly_borne_out, at(4, 6));
+  EXPECT_FALSE(confirmation.lastBeforeDoubt());
+}
+
+TEST(MapConfirmation, ACameraThatWasFoundAgainWhereLittleIsMappedIsNotInDoubt) {
+  MapConfirmation confirmation{MapConfirmationOptions()};
+  confirmation.observe(borne_out, at(1, 3));
+  confirmation.askForProof();
+  confirmation.observe(few, at(2, 4));
+  EXPECT_FALSE(confirmation.lastBeforeDoubt());
 }
 
 TEST(MapConfirmation, WithNoPoseBorneOutBeforeThereIsNothingToGoBackTo) {
