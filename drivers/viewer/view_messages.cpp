@@ -61,10 +61,26 @@ Json poseOf(const Pose& pose) {
 
 bool isFinite(const Pose& pose) { return pose.translation.allFinite() && pose.rotation.coeffs().allFinite(); }
 
+Json vectorOf(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+// Null where there is no unit; `up` [the map's frame, unit length] is null until gravity is known, `bias` likewise.
+Json inertiaOf(const std::optional<InertialAlignment>& inertia) {
+  if (!inertia) return nullptr;
+  Json json{{"up", nullptr}, {"bias", nullptr}};
+  if (inertia->is_known) json["up"] = vectorOf(-inertia->gravity.normalized());
+  if (inertia->is_bias_known) {
+    json["bias"] = {{"rate", vectorOf(inertia->bias.rate)},
+                    {"rate_sigma", inertia->rate_bias_sigma},
+                    {"force", vectorOf(inertia->bias.force)},
+                    {"force_sigma", inertia->force_bias_sigma}};
+  }
+  return json;
+}
+
 Json frameOf(const FrameResult& frame) {
   Json json{{"index", frame.index},   {"utime", utimeOf(frame.time_ns)}, {"state", stateName(frame.state)},
             {"reason", frame.reason}, {"tracked", frame.tracked_points}, {"mapped", frame.mapped_points},
-            {"pose", nullptr},        {"world", worldOf(frame)}};
+            {"pose", nullptr},        {"world", worldOf(frame)},         {"inertia", inertiaOf(frame.inertia)}};
   if (frame.has_pose && isFinite(frame.world_T_camera)) json["pose"] = poseOf(frame.world_T_camera);
   return json;
 }

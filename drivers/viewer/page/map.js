@@ -3,6 +3,8 @@
 
 const MOST_CERTAIN = 25; // [%] of the depth: points that are known worse are drawn on request only
 const TAIL_SECONDS = 10;
+const FIRST_UP = [0, -1, 0]; // while nothing says where up is: the world is the first camera's frame, y down
+const LEAST_TURN = 0.02; // [rad]: what is known of up is improved all the time
 const NEW = 0xffffffff; // of a run of the map: not in the one before
 const FRUSTUM_LINES = [[0, 1], [0, 2], [0, 3], [0, 4], [1, 2], [2, 3], [3, 4], [4, 1]];
 
@@ -82,12 +84,9 @@ class MapView {
   build(canvas) {
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(50, 4 / 3, 0.01, 1000);
-    this.camera.up.set(0, -1, 0); // the world is the first camera's frame, y down
+    this.camera.up.set(...FIRST_UP);
     this.camera.position.set(0, -3, -6);
-    this.orbit = new THREE.OrbitControls(this.camera, canvas);
-    this.orbit.enableKeys = false;
-    this.orbit.addEventListener('start', () => { this.touched = true; });
-    this.orbit.addEventListener('change', () => this.render());
+    this.orbit = this.orbitOn(canvas);
     canvas.addEventListener('keydown', (event) => this.turnByKey(event));
     this.points = new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({ size: 2 * (window.devicePixelRatio || 1), sizeAttenuation: false, vertexColors: THREE.VertexColors }));
     this.lines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ vertexColors: THREE.VertexColors }));
@@ -101,6 +100,29 @@ class MapView {
       setPositions(drawn.geometry, []);
       this.scene.add(drawn);
     }
+  }
+
+  // Turns about the camera's up as it is now.
+  orbitOn(canvas) {
+    const orbit = new THREE.OrbitControls(this.camera, canvas);
+    orbit.enableKeys = false;
+    orbit.addEventListener('start', () => { this.touched = true; });
+    orbit.addEventListener('change', () => this.render());
+    return orbit;
+  }
+
+  // `up`: unit length, in the map's frame; null: nothing says it.
+  setUp(up) {
+    if (!this.renderer) return;
+    const wanted = new THREE.Vector3(...(up || FIRST_UP));
+    if (this.camera.up.angleTo(wanted) < LEAST_TURN) return;
+    this.camera.up.copy(wanted);
+    const target = this.orbit.target.clone();
+    this.orbit.dispose();
+    this.orbit = this.orbitOn(this.renderer.domElement);
+    this.orbit.target.copy(target);
+    this.orbit.update();
+    if (!this.touched) this.fit(); else this.render();
   }
 
   // Of the image, at distance 1.
@@ -214,7 +236,8 @@ class MapView {
   // From behind the first camera and above it, so that all is in view.
   fit() {
     if (!this.renderer || !this.radius) return;
-    const back = new THREE.Vector3(-0.45, -0.75, -1).normalize();
+    const upright = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(...FIRST_UP), this.camera.up);
+    const back = new THREE.Vector3(-0.45, -0.75, -1).normalize().applyQuaternion(upright);
     const distance = 0.95 * this.radius / Math.sin(25 * Math.PI / 180) * Math.max(1, 1.2 / this.camera.aspect);
     this.camera.near = 1e-3 * this.radius;
     this.camera.far = 100 * this.radius;

@@ -30,6 +30,17 @@ function scaleText(scale) {
   return `${scale.metres_per_unit.toPrecision(4)} m ± ${(100 * scale.sigma).toPrecision(2)} %`;
 }
 
+const length = (vector) => Math.hypot(...vector);
+
+function inertiaText(frame) {
+  if (!frame || !frame.pose) return '–';
+  const inertia = frame.inertia;
+  if (!inertia) return 'none';
+  const bias = inertia.bias
+    ? `, biases ${length(inertia.bias.rate).toPrecision(2)} rad/s, ${length(inertia.bias.force).toPrecision(2)} m/s²` : '';
+  return (inertia.up ? 'up is known' : 'up is not known yet') + bias;
+}
+
 function duration(ms) {
   if (!(ms >= 0)) return '–';
   const s = Math.floor(ms / 1000);
@@ -42,6 +53,7 @@ function showFigures(state) {
     'Keyframes': number(status.keyframes), 'Map points': number(status.points), 'Maps not joined': number(status.worlds),
     'Map unit': scaleText(state.scale), 'Found again': number(status.recoveries + status.relocalisations), 'Loops closed': number(status.loops),
     'Frames dropped': number(status.dropped), 'Running for': duration(status.uptime_ms),
+    'Inertial unit': inertiaText(state.frame),
   };
   const list = element('figures');
   if (list.children.length === 0) {
@@ -89,6 +101,7 @@ function showState(state) {
     element('state').dataset.state = name;
     setText(element('state-name'), state.status.camera_problem ? 'No camera' : STATE_TEXT[name] || name);
     setText(element('reason'), (frame.reason && frame.reason[0].toUpperCase() + frame.reason.slice(1) + '.') || STATE_REASON[name] || '');
+    if (frame.pose) map.setUp(frame.inertia && frame.inertia.up);
     map.moveCamera(frame.pose, frame.utime / 1e6, frame.state, frame.world);
   } else if (state.status.camera_problem) {
     element('state').dataset.state = 'lost';

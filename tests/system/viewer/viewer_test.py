@@ -152,6 +152,28 @@ class Viewer(unittest.TestCase):
             self.assertGreater(max(abs(a - b) for a, b in zip(before, after)), 1e-3)
             self.assertEqual(opened.complaints(), [])
 
+    def test_the_map_stands_as_gravity_says(self):
+        with edgeslam("view", SEQUENCE, "--port", "0") as program, browser() as opened:
+            opened.open(program.page)
+            self.assertTrue(comes_true(lambda: has_map(opened)), program.said())
+            self.assertTrue(comes_true(lambda: "none" in opened.text("#figures")), opened.text("#figures"))
+            for up in ([0, 0, 1], [0.6, 0, -0.8], None):
+                above = opened.run('''
+                    map.setUp(arguments[0]);
+                    const offset = map.camera.position.clone().sub(map.orbit.target);
+                    return offset.dot(new THREE.Vector3(...(arguments[0] || [0, -1, 0]))) / offset.length();''', up)
+                self.assertGreater(above, 0.3, "it is looked at from above")
+                self.assertLess(above, 0.9, "but not from right above")
+                self.assertTrue(comes_true(lambda: has_map(opened)), up)
+            # The position that a person chose stays.
+            moved = opened.run('''
+                map.touched = true;
+                const before = map.camera.position.clone();
+                map.setUp([0, 0, 1]);
+                return map.camera.position.distanceTo(before);''')
+            self.assertLess(moved, 1e-6)
+            self.assertEqual(opened.complaints(), [])
+
     def test_commands_do_what_their_buttons_say(self):
         with tempfile.TemporaryDirectory() as folder:
             token = "0123456789abcdef"

@@ -102,5 +102,22 @@ TEST(ViewMessages, TheStateIsJsonWithFiniteNumbers) {
   EXPECT_EQ(json["status"]["camera_problem"], "unplugged");
 }
 
+Json inertiaIn(const ViewedState& state) { return Json::parse(stateMessage(state, {}).substr(1))["frame"]["inertia"]; }
+
+TEST(ViewMessages, UpAndBiasesAreThereOnceTheyAreKnown) {
+  ViewedState state;
+  state.has_frame = true;
+  EXPECT_TRUE(inertiaIn(state).is_null()) << "no unit";
+  InertialAlignment& inertia = state.frame.inertia.emplace();
+  inertia.gravity = {0, 3, 4};
+  inertia.bias = {{0.1, 0.2, 0.3}, {1, 2, 3}};
+  EXPECT_TRUE(inertiaIn(state)["up"].is_null());
+  EXPECT_TRUE(inertiaIn(state)["bias"].is_null());
+  inertia.is_known = inertia.is_bias_known = true;
+  EXPECT_EQ(inertiaIn(state)["up"], Json({0.0, -0.6, -0.8}));
+  EXPECT_EQ(inertiaIn(state)["bias"]["rate"], Json({0.1, 0.2, 0.3}));
+  EXPECT_EQ(inertiaIn(state)["bias"]["force"], Json({1.0, 2.0, 3.0}));
+}
+
 }  // namespace
 }  // namespace edgeslam
