@@ -69,10 +69,7 @@ Json inertiaOf(const std::optional<InertialAlignment>& inertia) {
   Json json{{"up", nullptr}, {"bias", nullptr}};
   if (inertia->is_known) json["up"] = vectorOf(-inertia->gravity.normalized());
   if (inertia->is_bias_known) {
-    json["bias"] = {{"rate", vectorOf(inertia->bias.rate)},
-                    {"rate_sigma", inertia->rate_bias_sigma},
-                    {"force", vectorOf(inertia->bias.force)},
-                    {"force_sigma", inertia->force_bias_sigma}};
+    json["bias"] = {{"rate", vectorOf(inertia->bias.rate)}, {"force", vectorOf(inertia->bias.force)}};
   }
   return json;
 }

@@ -15,8 +15,8 @@ namespace edgeslam {
 struct MapConfirmationOptions {
   int fewest_expected = 60;   // points: of fewer the share says nothing
   double least_share = 0.15;  // of the points expected that must be confirmed ...
-  // ... and where the pose before was in doubt, or where tracking lost the camera and found it again. A few points by
-  // chance must not end the search for a pose in doubt.
+  // ... and where the pose before was in doubt, or proof is asked for. A few points by chance must not end the search
+  // for a pose in doubt.
   double least_share_to_believe_again = 0.3;
 };
 
@@ -37,7 +37,7 @@ class MapConfirmation {
  public:
   explicit MapConfirmation(const MapConfirmationOptions& options) : options_(options) {}
 
-  // Tracking found the camera again: the map is yet to bear that out.
+  // The camera was lost, and found again by its tracks, not in the map as a whole: what they are on may have moved.
   void askForProof() { is_unproven_ = true; }
 
   // A frame that the map's points were looked for in.

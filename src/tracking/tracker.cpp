@@ -516,7 +516,7 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   std::swap(last_, kept_);
   kept_.forget();
   spare_.forget();
-  believe(view, points.empty());
+  keepConfirmation(view, points.empty());
   if (!points.empty()) last_.tracks.clear();
   for (const FoundAgain& found : points) last_.tracks.push_back(trackOf(found));
   if (options_.map_is_frozen) compareWithMap(view, last_.tracks);
@@ -543,7 +543,7 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
 
 // What was found in the map as a whole is believed. Tracks that agree with the latest keyframes may all follow
 // something that moves.
-void Tracker::believe(const MapView& view, bool by_tracks) {
+void Tracker::keepConfirmation(const MapView& view, bool by_tracks) {
   const std::optional<Similarity> new_S_old = by_tracks ? newWorldSOldWorld(view_, view) : std::nullopt;
   if (!new_S_old) return confirmation_.forget();
   confirmation_.move(*new_S_old);

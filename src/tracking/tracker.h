@@ -156,7 +156,7 @@ class Tracker {
   std::optional<WheelPrediction> carriedByWheels(std::int64_t time_ns) const;
   void goOnBy(std::string_view by, FrameResult& result) const;
   void lose(Work& work);
-  void believe(const MapView& view, bool by_tracks);
+  void keepConfirmation(const MapView& view, bool by_tracks);
   void takeCamera(const FoundCamera& found);
   void linkFromLatestKeyframe();
   void beLostSince(std::int64_t time_ns);
