@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -16,32 +17,59 @@ namespace {
 // Of a keyframe that nothing ties to another: all of the map's extent and any direction.
 constexpr double unknown_variance = 1;
 
+constexpr double unknown_along = 1000;  // standard deviation of a point of a straight edge, along it [px]
+
 struct SharedPoints {
   PoseObservations observations;
   double scale_information = 0;   // sum over the points of (depth over its standard deviation)^2
   std::vector<double> distances;  // from the keyframe
 };
 
-// The map points that both see and that `keyframe` does not host, as it sees them.
-void addSharedPoints(const Camera& camera, const Map& map, const Keyframe& keyframe, KeyframeId other,
-                     SharedPoints& shared) {
-  const Pose camera_T_world = keyframe.world_T_camera.inverse();
+// Those map points that both see and that `keyframe` does not host, as it sees them.
+std::vector<const PointObservation*> seenByBoth(const Map& map, const Keyframe& keyframe, KeyframeId other) {
+  std::vector<const PointObservation*> both;
   for (const PointObservation& seen : keyframe.observations) {
     const auto found = map.points.find(seen.point);
     if (found == map.points.end() || found->second.host == keyframe.id) continue;
     const MapPoint& point = found->second;
     const auto in = [&](KeyframeId id) { return std::binary_search(point.seen_in.begin(), point.seen_in.end(), id); };
-    if (!in(keyframe.id) || (point.host != other && !in(other))) continue;
+    if (in(keyframe.id) && (point.host == other || in(other))) both.push_back(&seen);
+  }
+  return both;
+}
+
+SharedPoints pointsSharedWith(const Camera& camera, const MapUncertaintyOptions& options, const Map& map,
+                              const Keyframe& keyframe, KeyframeId other) {
+  const std::vector<const PointObservation*> both = seenByBoth(map, keyframe, other);
+  std::vector<int> on_edge(keyframe.straight_edges.size(), 0);
+  const auto onItsEdge = [&](const PointObservation& seen) -> int& {
+    return on_edge[static_cast<std::size_t>(seen.straight_edge)];
+  };
+  for (const PointObservation* seen : both) {
+    if (seen->straight_edge >= 0) ++onItsEdge(*seen);
+  }
+  SharedPoints shared;
+  const Pose camera_T_world = keyframe.world_T_camera.inverse();
+  for (const PointObservation* seen : both) {
+    const MapPoint& point = map.points.at(seen->point);
+    Measurement measurement = seen->measurement;
+    double share = 1;  // of what it would tell if its error were its own
+    if (seen->straight_edge >= 0) {
+      share = std::min(1.0, options.independent_on_edge / onItsEdge(*seen));
+      measurement.sigma_normal /= std::sqrt(share);
+      measurement.sigma_tangent = unknown_along;
+    }
     const Eigen::Vector3d position = worldPosition(map, point);
     shared.observations.push_back(observeWithDepth(camera, camera_T_world * map.keyframes[point.host].world_T_camera,
                                                    {point.host_bearing, point.inverse_depth, point.inverse_depth_sigma},
-                                                   position, seen.measurement));
+                                                   position, measurement));
     shared.distances.push_back((position - keyframe.world_T_camera.translation).norm());
     if (point.inverse_depth_sigma > 0) {
       const double relative = point.inverse_depth / point.inverse_depth_sigma;
-      shared.scale_information += relative * relative;
+      shared.scale_information += share * relative * relative;
     }
   }
+  return shared;
 }
 
 double squared(double value) { return value * value; }
@@ -52,9 +80,8 @@ std::optional<Matrix7d> seenUncertainty(const Camera& camera, const MapUncertain
                                         const Keyframe& keyframe, KeyframeId other_id) {
   const Keyframe& other = map.keyframes[other_id];
   const Pose keyframe_T_other = keyframe.world_T_camera.inverse() * other.world_T_camera;
-  SharedPoints seen_here, seen_there;
-  addSharedPoints(camera, map, keyframe, other_id, seen_here);
-  addSharedPoints(camera, map, other, keyframe.id, seen_there);
+  const SharedPoints seen_here = pointsSharedWith(camera, options, map, keyframe, other_id);
+  const SharedPoints seen_there = pointsSharedWith(camera, options, map, other, keyframe.id);
   const Matrix6d carry = updateCarrying(keyframe_T_other).topLeftCorner<6, 6>();
   const bool here = seen_here.observations.size() >= seen_there.observations.size();
   const SharedPoints& more = here ? seen_here : seen_there;

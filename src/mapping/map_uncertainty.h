@@ -20,11 +20,13 @@ struct MapUncertaintyOptions {
   // is too little by these factors.
   double pose_factor = 4;
   double scale_factor = 4;
+  // Those on one straight edge go together altogether: so many of them tell what all of them do.
+  double independent_on_edge = 2;
   // What a way adds whatever is seen on it, for calibration and rolling shutters are never quite right: standard
   // deviations after a way as long as the scene is deep, or a turn of 1 rad, growing with the root of the way.
-  double position_walk = 0.008;  // share of the scene's depth
-  double rotation_walk = 0.01;   // [rad]
-  double scale_walk = 0.03;
+  double position_walk = 0.004;   // share of the scene's depth
+  double rotation_walk = 0.0075;  // [rad]
+  double scale_walk = 0.015;
   std::optional<WheelOptions> wheels;  // beneath the camera; none: the camera alone
 };
 

@@ -21,10 +21,10 @@ class KeyframeMaking {
 
   // Another world: the numbers that were given go on being those of the ones before.
   void beginWorld() { first_of_world_ = next_keyframe_; }
-  // The frame's own points, as those of a world's first keyframe; what was tracked in it is forgotten.
   // For frames to come: it was found to be another one.
   void setCamera(const Camera& camera) { camera_ = camera; }
 
+  // The frame's own points, as those of a world's first keyframe; what was tracked in it is forgotten.
   void choosePointsOfFirst(FollowedFrame& frame, const PointAccuracy& accuracy);
   // Points beside those that are tracked in a frame that is none of a keyframe's; gives the first one's number.
   PointId choosePointsOfSpare(FollowedFrame& frame, const PointAccuracy& accuracy);

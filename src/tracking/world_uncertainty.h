@@ -16,12 +16,13 @@ struct WorldUncertaintyOptions {
   double correlation_factor = 6;
   // Map points that contradict the pose go together, too (something that moves, a torn image): this share of those in
   // view doubles the pose's variance in the world, twice the share makes it five times as large.
-  double doubling_outlier_share = 0.2;
+  double doubling_outlier_share = 0.15;
   double calibration_sigma = 0.5;  // of directions, whatever is seen: no calibration is quite right [px]
 };
 
-// The map's own, where a camera with these tracks looks: of the keyframe in which most of the points in view are
-// hosted, carried to the camera. `view` has a keyframe.
+// The map's own, where a camera with these tracks looks: two of three points in view are hosted by keyframes that are
+// known at least as well, carried to the camera. Those that are known best do not speak for all: on an old edge that
+// is still in view, or in again, hardly anything is known along it. `view` has a keyframe.
 Matrix6d mapUncertaintyAt(const MapView& view, const std::vector<Track>& tracks, const Pose& world_T_camera,
                           std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 

@@ -37,7 +37,7 @@ TEST_P(SharedSequence, StaysWithinItsBounds) {
   const Honesty honesty =
       honestyOf(readMeasuredPoses(folder.path("result")), readTrajectory(input + "/groundtruth.txt"));
   EXPECT_GE(honesty.share_within, 0.99);
-  EXPECT_GE(honesty.normalised_error, 0.02);
+  EXPECT_GE(honesty.normalised_error, 0.005);
   EXPECT_LE(honesty.normalised_error, 2);
   if (!std::filesystem::exists(input + "/surfaces.txt")) return;
   const AbsoluteError error = absoluteError(readTrajectory(folder.path("result/trajectory.txt")),

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "mapping/local_adjustment.h"
 #include "unit/mapping/edge_scene.h"
 #include "unit/mapping/landmark_walk.h"
@@ -75,6 +77,29 @@ TEST(MapUncertainty, OfAKeyframeThatSharesNothingIsLarge) {
   addUncertainty(test::Walk::camera(), {}, map);
   EXPECT_GE(positionSigma(map.keyframes.back()), 1);
   EXPECT_LT(positionSigma(map.keyframes[29]), 1);
+}
+
+// All of its points err together, and slide along it.
+TEST(MapUncertainty, PointsOfOneStraightEdgeTellWhatAFewTell) {
+  Lap lap;
+  Map& map = lap.walk.map;
+  renewUncertainty(test::Walk::camera(), {}, map);
+  const Keyframe free = map.keyframes[1];
+  for (Keyframe& keyframe : map.keyframes) {
+    keyframe.straight_edges.resize(1);
+    std::vector<PointObservation> on_edge(keyframe.observations.begin(), keyframe.observations.end());
+    for (PointObservation& seen : on_edge) seen.straight_edge = 0;
+    keyframe.observations = SharedList<PointObservation>(std::move(on_edge));
+  }
+  MapUncertaintyOptions options;
+  options.independent_on_edge = 1e9;
+  renewUncertainty(test::Walk::camera(), options, map);
+  const Keyframe sliding = map.keyframes[1];
+  EXPECT_GT(positionSigma(sliding), positionSigma(free));
+  EXPECT_EQ(sliding.uncertainty(6, 6), free.uncertainty(6, 6));
+  renewUncertainty(test::Walk::camera(), {}, map);
+  EXPECT_GT(positionSigma(map.keyframes[1]), positionSigma(sliding));
+  EXPECT_GT(map.keyframes[1].uncertainty(6, 6), free.uncertainty(6, 6));
 }
 
 // Simulated measurements with the noise that they state, in many maps: the error of the last keyframe is one that its
