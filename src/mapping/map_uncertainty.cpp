@@ -25,37 +25,43 @@ struct SharedPoints {
   std::vector<double> distances;  // from the keyframe
 };
 
+struct SeenPoint {
+  const PointObservation* seen;
+  const MapPoint* point;
+};
+
 // Those map points that both see and that `keyframe` does not host, as it sees them.
-std::vector<const PointObservation*> seenByBoth(const Map& map, const Keyframe& keyframe, KeyframeId other) {
-  std::vector<const PointObservation*> both;
+std::vector<SeenPoint> seenByBoth(const Map& map, const Keyframe& keyframe, KeyframeId other) {
+  std::vector<SeenPoint> both;
   for (const PointObservation& seen : keyframe.observations) {
     const auto found = map.points.find(seen.point);
     if (found == map.points.end() || found->second.host == keyframe.id) continue;
     const MapPoint& point = found->second;
     const auto in = [&](KeyframeId id) { return std::binary_search(point.seen_in.begin(), point.seen_in.end(), id); };
-    if (in(keyframe.id) && (point.host == other || in(other))) both.push_back(&seen);
+    if (in(keyframe.id) && (point.host == other || in(other))) both.push_back({&seen, &point});
   }
   return both;
 }
 
 SharedPoints pointsSharedWith(const Camera& camera, const MapUncertaintyOptions& options, const Map& map,
                               const Keyframe& keyframe, KeyframeId other) {
-  const std::vector<const PointObservation*> both = seenByBoth(map, keyframe, other);
+  const std::vector<SeenPoint> both = seenByBoth(map, keyframe, other);
   std::vector<int> on_edge(keyframe.straight_edges.size(), 0);
   const auto onItsEdge = [&](const PointObservation& seen) -> int& {
     return on_edge[static_cast<std::size_t>(seen.straight_edge)];
   };
-  for (const PointObservation* seen : both) {
-    if (seen->straight_edge >= 0) ++onItsEdge(*seen);
+  for (const SeenPoint& shown : both) {
+    if (shown.seen->straight_edge >= 0) ++onItsEdge(*shown.seen);
   }
   SharedPoints shared;
   const Pose camera_T_world = keyframe.world_T_camera.inverse();
-  for (const PointObservation* seen : both) {
-    const MapPoint& point = map.points.at(seen->point);
-    Measurement measurement = seen->measurement;
+  for (const SeenPoint& shown : both) {
+    const PointObservation& seen = *shown.seen;
+    const MapPoint& point = *shown.point;
+    Measurement measurement = seen.measurement;
     double share = 1;  // of what it would tell if its error were its own
-    if (seen->straight_edge >= 0) {
-      share = std::min(1.0, options.independent_on_edge / onItsEdge(*seen));
+    if (seen.straight_edge >= 0) {
+      share = std::min(1.0, options.independent_on_edge / onItsEdge(seen));
       measurement.sigma_normal /= std::sqrt(share);
       measurement.sigma_tangent = unknown_along;
     }
