@@ -11,7 +11,7 @@ namespace {
 constexpr std::int64_t unit_ns = 100'000;  // of V4L2_CID_EXPOSURE_ABSOLUTE
 constexpr int frames_between = 4;
 
-const CameraControl* find(const std::vector<CameraControl>& controls, std::uint32_t id) {
+const CameraControl* writableControl(const std::vector<CameraControl>& controls, std::uint32_t id) {
   const auto found = std::find_if(controls.begin(), controls.end(),
                                   [&](const CameraControl& control) { return control.id == id && !control.read_only; });
   return found == controls.end() ? nullptr : &*found;
@@ -27,9 +27,9 @@ int write(const CaptureDevice& device, std::uint32_t id, std::int64_t value) {
 
 std::optional<LimitedExposure> LimitedExposure::take(const CaptureDevice& device,
                                                      const std::vector<CameraControl>& controls, double longest_ms) {
-  const CameraControl* const exposure = find(controls, V4L2_CID_EXPOSURE_ABSOLUTE);
+  const CameraControl* const exposure = writableControl(controls, V4L2_CID_EXPOSURE_ABSOLUTE);
   if (exposure == nullptr) return std::nullopt;
-  if (find(controls, V4L2_CID_EXPOSURE_AUTO) != nullptr &&
+  if (writableControl(controls, V4L2_CID_EXPOSURE_AUTO) != nullptr &&
       write(device, V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL) < 0) {
     return std::nullopt;
   }
@@ -43,9 +43,9 @@ std::optional<LimitedExposure> LimitedExposure::take(const CaptureDevice& device
   if (write(device, V4L2_CID_EXPOSURE_ABSOLUTE, limited.setting_.exposure) < 0) return std::nullopt;
 
   for (const std::uint32_t id : {V4L2_CID_GAIN, V4L2_CID_ANALOGUE_GAIN}) {
-    const CameraControl* const gain = find(controls, id);
+    const CameraControl* const gain = writableControl(controls, id);
     if (gain == nullptr) continue;
-    if (find(controls, V4L2_CID_AUTOGAIN) != nullptr) write(device, V4L2_CID_AUTOGAIN, 0);
+    if (writableControl(controls, V4L2_CID_AUTOGAIN) != nullptr) write(device, V4L2_CID_AUTOGAIN, 0);
     limited.gain_id_ = id;
     limited.range_.least_gain = gain->least;
     limited.range_.largest_gain = gain->largest;

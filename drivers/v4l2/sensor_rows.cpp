@@ -9,7 +9,6 @@ namespace edgeslam {
 namespace {
 
 constexpr double longest_readout_s = 0.2;  // of calibrations (geometry/camera.h)
-constexpr double rate_tolerance = 0.02;    // 29.97 is 30
 
 // 0 where there is no such control.
 std::int64_t controlValue(const Device& device, std::uint32_t id, bool is_wide) {

@@ -13,8 +13,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double usual_rate = 30;        // [1/s]
-constexpr double rate_tolerance = 0.02;  // 29.97 is 30
+constexpr double usual_rate = 30;  // [1/s]
 
 // The parts of v4l2_format that matter, whether single- or multi-planar.
 struct ImageFormat {

@@ -10,6 +10,8 @@
 
 namespace edgeslam {
 
+constexpr double rate_tolerance = 0.02;  // of frames: 29.97 a second are 30
+
 struct StreamSetup {
   BufferLayout layout;
   double frame_rate = 0;  // [1/s]; 0 where the driver does not tell

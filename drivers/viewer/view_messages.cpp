@@ -59,8 +59,6 @@ Json poseOf(const Pose& pose) {
   return {{"position", {t.x(), t.y(), t.z()}}, {"rotation", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-bool isFinite(const Pose& pose) { return pose.translation.allFinite() && pose.rotation.coeffs().allFinite(); }
-
 Json vectorOf(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 // Null where there is no unit; `up` [the map's frame, unit length] is null until gravity is known, `bias` likewise.

@@ -16,8 +16,6 @@ std::uint8_t percent(float ratio) {
   return static_cast<std::uint8_t>(std::isfinite(ratio) ? std::clamp(100 * ratio, 0.0F, 255.0F) : 255.0F);
 }
 
-bool isFinite(const Pose& pose) { return pose.translation.allFinite() && pose.rotation.coeffs().allFinite(); }
-
 // Numbers in an order of their own that has nothing to do with theirs.
 std::uint64_t shuffled(std::uint64_t id) {
   id = (id ^ (id >> 31)) * 0x9E3779B97F4A7C15U;

@@ -7,6 +7,7 @@
 #include "adjustment/bundle_inertia.h"
 #include "adjustment/bundle_lines.h"
 #include "adjustment/bundle_minimization.h"
+#include "adjustment/index.h"
 #include "geometry/median.h"
 
 namespace edgeslam {
@@ -18,10 +19,6 @@ constexpr double least_inverse_depth = 1e-6;
 // Share by which the scale camera may differ from the others that hold the scale.
 constexpr double largest_scale_difference = 0.02;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-bool finite(const Pose& pose) { return pose.rotation.coeffs().allFinite() && pose.translation.allFinite(); }
 
 bool indicesInRange(const BundleProblem& problem) {
   const int cameras = static_cast<int>(problem.cameras.size()), points = static_cast<int>(problem.points.size());
@@ -173,7 +170,7 @@ bool readBack(const BundleStructure& structure, const BundleState& state, Bundle
   for (const int c : structure.camera_of_unknown) {
     Pose& pose = problem.cameras[at(c)].world_T_camera;
     pose = {state.rotations[at(c)], state.frames[at(c)].centre};
-    if (!finite(pose)) return false;
+    if (!isFinite(pose)) return false;
   }
   for (std::size_t i = 0; i < structure.points.size(); ++i) {
     if (!structure.points[i].free) continue;
@@ -196,7 +193,7 @@ bool readBack(const BundleStructure& structure, const BundleState& state, Bundle
 BundleResult adjustBundle(const Camera& camera, BundleProblem& problem, const BundleOptions& options,
                           const std::atomic<bool>* interrupted) {
   BundleResult result;
-  const auto finite_camera = [](const BundleCamera& c) { return finite(c.world_T_camera) && c.twist.allFinite(); };
+  const auto finite_camera = [](const BundleCamera& c) { return isFinite(c.world_T_camera) && c.twist.allFinite(); };
   if (!indicesInRange(problem) || !std::all_of(problem.cameras.begin(), problem.cameras.end(), finite_camera)) {
     result.errors.assign(problem.observations.size(), infinity);
     result.depth_sigmas.assign(problem.points.size(), 0);

@@ -3,12 +3,11 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "adjustment/index.h"
 #include "geometry/tangents.h"
 
 namespace edgeslam {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 // Whitened, with the derivatives by the twist of each camera, and by what is adjusted of inertia, where asked for.
 struct Term {

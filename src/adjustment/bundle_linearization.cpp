@@ -5,14 +5,11 @@
 
 #include "adjustment/bundle_inertia.h"
 #include "adjustment/bundle_lines.h"
+#include "adjustment/damping.h"
+#include "adjustment/index.h"
 
 namespace edgeslam {
 namespace {
-
-// Depths with less information than this are damped as if they had it.
-constexpr double least_information = 1e-6;
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 double priorCost(const StructuredPoint& point, double inverse_depth) {
   const double error = inverse_depth - point.prior_inverse_depth;

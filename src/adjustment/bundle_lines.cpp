@@ -6,15 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "adjustment/damping.h"
+#include "adjustment/index.h"
 #include "adjustment/line_residual.h"
 
 namespace edgeslam {
 namespace {
-
-// Lines with less information than this in a direction of their unknowns are damped, or known, as if they had it.
-constexpr double least_information = 1e-6;
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 Eigen::Vector4d byChange(const LineBasis& basis, const LineDerivatives& derivatives) {
   Eigen::Vector4d by_change;

@@ -5,6 +5,7 @@
 
 #include "adjustment/bundle_inertia.h"
 #include "adjustment/bundle_lines.h"
+#include "adjustment/index.h"
 
 namespace edgeslam {
 namespace {
@@ -15,8 +16,6 @@ constexpr double least_damping = 1e-9;
 constexpr double best_factor = 1.0 / 3;  // that the damping is multiplied by after a step as good as expected
 constexpr double most_damping = 1e8;
 constexpr double converged_change = 1e-6;  // of the cost; outliers inflate the cost that this is relative to
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 void readState(const BundleProblem& problem, const BundleStructure& structure, BundleState& state) {
   state.rotations.clear();

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adjustment/index.h"
+
 namespace edgeslam {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 bool takesPart(const BundleProblem& problem, const BundleObservation& o) {
   const BundlePoint& p = problem.points[at(o.point)];

@@ -154,13 +154,13 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
               const PoseOptions& options, Pose& pose) {
   constexpr int wide_iterations = 3;
   constexpr double wide_factor = 5;
-  constexpr double least_damping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
-  constexpr double most_damping = 1e2;
+  constexpr double least_pose_damping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
+  constexpr double most_pose_damping = 1e2;
   // A point behind the camera costs what an error of this whitened norm does; so does anything worse, without pulling.
   constexpr double norm_behind_camera = 1e4;
 
   double huber = options.huber * wide_factor;
-  double damping = least_damping;
+  double damping = least_pose_damping;
   const auto equationsAt = [&](const Pose& at) {
     NormalEquations equations = linearize(shutterAt(at), observations, huber, norm_behind_camera);
     addPrior(prior, at, equations);
@@ -173,7 +173,7 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
       equations = equationsAt(pose);
     }
     bool accepted = false, small = false;
-    while (!accepted && damping <= most_damping) {
+    while (!accepted && damping <= most_pose_damping) {
       Vector6d step;
       if (!solveDamped(equations, damping, step)) return false;
       // In units of the pose's own standard deviation, so free of scale.
@@ -184,7 +184,7 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
       if (accepted) {
         pose = candidate;
         equations = at_candidate;
-        damping = std::max(least_damping, 0.1 * damping);
+        damping = std::max(least_pose_damping, 0.1 * damping);
       } else {
         if (small) break;
         damping = damping * 30;
@@ -193,7 +193,7 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
     if (small || !accepted) {
       if (iteration >= wide_iterations) break;
       iteration = wide_iterations - 1;  // done with the wide threshold: on to the narrow one
-      damping = least_damping;
+      damping = least_pose_damping;
     }
   }
   return pose.rotation.coeffs().allFinite() && pose.translation.allFinite();

@@ -64,7 +64,7 @@ struct EdgeCost {
   double weight, length;
 };
 
-bool finite(const Similarity& similarity) {
+bool isFiniteSimilarity(const Similarity& similarity) {
   return std::isfinite(similarity.scale) && similarity.scale > 0 && similarity.rotation.coeffs().allFinite() &&
          similarity.translation.allFinite();
 }
@@ -74,12 +74,12 @@ bool wellPosed(const PoseGraph& graph) {
   if (!(graph.length > 0 && std::isfinite(graph.length))) return false;
   bool any_fixed = false;
   for (const PoseGraphNode& node : graph.nodes) {
-    if (!finite(node.world_S_node)) return false;
+    if (!isFiniteSimilarity(node.world_S_node)) return false;
     any_fixed = any_fixed || node.fixed;
   }
   for (const PoseGraphEdge& edge : graph.edges) {
     if (edge.from < 0 || edge.from >= nodes || edge.to < 0 || edge.to >= nodes || edge.from == edge.to) return false;
-    if (!finite(edge.from_S_to) || !(edge.weight > 0 && std::isfinite(edge.weight))) return false;
+    if (!isFiniteSimilarity(edge.from_S_to) || !(edge.weight > 0 && std::isfinite(edge.weight))) return false;
   }
   return any_fixed && !graph.edges.empty();
 }
@@ -128,7 +128,8 @@ PoseGraphResult optimisePoseGraph(PoseGraph& graph, int iterations) {
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
     optimised.push_back(similarityOf(graph.nodes[i].world_S_node, parameters[i]));
   }
-  if (!summary.IsSolutionUsable() || !std::all_of(optimised.begin(), optimised.end(), finite)) return result;
+  if (!summary.IsSolutionUsable() || !std::all_of(optimised.begin(), optimised.end(), isFiniteSimilarity))
+    return result;
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
     if (!graph.nodes[i].fixed) graph.nodes[i].world_S_node = optimised[i];
   }

@@ -3,13 +3,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "adjustment/damping.h"
+#include "adjustment/index.h"
+
 namespace edgeslam {
 namespace {
-
-// Entries of the diagonal less than this are damped as if they were this.
-constexpr double least_information = 1e-6;
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 // With d from the origin to the centre c, the twist of a step [c'; w] is v = c' + d x w. These bring a block from
 // twists to such steps.

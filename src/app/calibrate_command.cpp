@@ -105,7 +105,7 @@ int calibrateCamera(const CalibrateOptions& options) {
   const Calibration calibration =
       calibrate(selection.views(), board, selection.imageSize(), calibrationOptions(options));
   writeFileAtomically(options.output, calibrationFileText(calibration, board, source));
-  const Coverage coverage = coverageOf(selection.views(), selection.imageSize());
+  const ViewCoverage coverage = coverageOf(selection.views(), selection.imageSize());
   std::cout << options.output << ": " << calibrationSummary(calibration, coverage);
   for (const std::string& wish : missingViews(coverage)) std::cout << "  it would gain from: " << wish << "\n";
   return exit_done;

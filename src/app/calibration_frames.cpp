@@ -26,7 +26,7 @@ class Guide {
   Guide(const Board& board, const TellLine& tell) : board_(board), tell_(tell) {}
 
   void afterView(const ViewSelection& selection) {
-    const Coverage coverage = coverageOf(selection.views(), selection.imageSize());
+    const ViewCoverage coverage = coverageOf(selection.views(), selection.imageSize());
     if (selection.views().size() % views_to_an_error == 0) {
       const std::optional<double> error = quickError(selection.views(), board_, selection.imageSize());
       error_ = error ? formatted(", error so far %.2f px", *error) : "";

@@ -45,19 +45,19 @@ std::string scaleText(int kind, double scale, double sigma) {
 
 std::string reasonText(const std::string& reason) { return reason.empty() ? "" : ": " + messageText(reason); }
 
-double seconds(std::int64_t utime) { return 1e-6 * static_cast<double>(utime); }
+double secondsOfUtime(std::int64_t utime) { return 1e-6 * static_cast<double>(utime); }
 
 std::string poseText(const double (&p)[3], const double (&q)[4]) {
   return line("at %.3f %.3f %.3f, turned %.4f %.4f %.4f %.4f", p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
 }
 
 std::string describe(const pose_t& pose) {
-  return line("t %.6f s, ", seconds(pose.utime)) + poseText(pose.pos, pose.orientation) +
+  return line("t %.6f s, ", secondsOfUtime(pose.utime)) + poseText(pose.pos, pose.orientation) +
          line(", velocity %.3f %.3f %.3f /s", pose.vel[0], pose.vel[1], pose.vel[2]);
 }
 
 std::string describe(const state_t& state) {
-  std::string text = line("#%lld t %.6f s, ", static_cast<long long>(state.sequence), seconds(state.utime)) +
+  std::string text = line("#%lld t %.6f s, ", static_cast<long long>(state.sequence), secondsOfUtime(state.utime)) +
                      stateText(state.state) + reasonText(state.reason);
   if (state.has_pose) text += line(", world %d, ", state.world) + poseText(state.position, state.orientation);
   return text +
@@ -69,10 +69,10 @@ std::string describe(const update_t& update) {
   const std::string status = nameOf<5>(
       {"no data", "valid", "insufficient features", "degenerate", "reprojection error"}, update.estimate_status);
   if (update.estimate_status != update_t::ESTIMATE_VALID) {
-    return line("t %.6f s, ", seconds(update.timestamp)) + status;
+    return line("t %.6f s, ", secondsOfUtime(update.timestamp)) + status;
   }
-  return line("t %.6f s, %s, in %.1f ms moved %.4f %.4f %.4f", seconds(update.timestamp), status.c_str(),
-              1e3 * (seconds(update.timestamp) - seconds(update.prev_timestamp)), update.translation[0],
+  return line("t %.6f s, %s, in %.1f ms moved %.4f %.4f %.4f", secondsOfUtime(update.timestamp), status.c_str(),
+              1e3 * (secondsOfUtime(update.timestamp) - secondsOfUtime(update.prev_timestamp)), update.translation[0],
               update.translation[1], update.translation[2]);
 }
 
@@ -80,9 +80,9 @@ std::string describe(const correction_t& correction) {
   const std::string why =
       nameOf<7>({"start", "map adjusted", "map corrected", "found again", "measured again", "another world", "scale"},
                 correction.change);
-  return line("t %.6f s, world %d, ", seconds(correction.utime), correction.world) +
+  return line("t %.6f s, world %d, ", secondsOfUtime(correction.utime), correction.world) +
          poseText(correction.translation, correction.rotation) +
-         line(", changed at %.6f s: %s, resets %d%s", seconds(correction.change_utime), why.c_str(),
+         line(", changed at %.6f s: %s, resets %d%s", secondsOfUtime(correction.change_utime), why.c_str(),
               correction.reset_count, correction.is_measured ? "" : ", not measured");
 }
 

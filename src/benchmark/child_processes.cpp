@@ -17,8 +17,6 @@
 namespace edgeslam {
 namespace {
 
-double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
@@ -39,6 +37,8 @@ double seconds(const timeval& time) {
 }
 
 }  // namespace
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void ChildProcesses::start(std::size_t number, const std::vector<std::string>& command, const std::string& log_path) {
   std::vector<std::string> words = command;

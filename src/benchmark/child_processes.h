@@ -13,6 +13,8 @@
 
 namespace edgeslam {
 
+double now_s();  // of a clock that is never set
+
 // Children that still run when this is destroyed, or when this program dies, are ended with it. Each is in a process
 // group of its own, so that Ctrl-C reaches this program alone.
 class ChildProcesses : public RunPlace {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmark/figure_changes.h"
+#include "benchmark/optional_json.h"
 #include "benchmark/page_assets.h"
 #include "evaluation/evaluation.h"
 #include "report/display_frame.h"
@@ -160,8 +161,6 @@ ordered_json frameTimesJson(const std::vector<FrameRow>& frames, const Clock& cl
   }
   return {{"times", times}, {"values_ms", values}};
 }
-
-ordered_json optionalJson(const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(); }
 
 ordered_json stageJson(const StageFigures* stage) {
   if (!stage) return nullptr;

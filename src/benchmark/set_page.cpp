@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "benchmark/optional_json.h"
 #include "benchmark/page_assets.h"
 #include "files/format_text.h"
 #include "report/page_template.h"
@@ -13,8 +14,6 @@ namespace edgeslam {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json optionalJson(const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(); }
 
 ordered_json errorJson(const std::optional<ErrorFigures>& error) {
   if (!error) return nullptr;

@@ -27,8 +27,6 @@ constexpr double ask_interval_s = 5, look_interval_s = 0.5;
 // A shared folder may show a file some seconds after it was written on a node.
 constexpr double late_files_s = 10;
 
-double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 std::string programInPath(const std::string& name) {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);

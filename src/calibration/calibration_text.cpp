@@ -57,7 +57,7 @@ std::string calibrationFileText(const Calibration& calibration, const Board& boa
   return text;
 }
 
-std::string calibrationSummary(const Calibration& calibration, const Coverage& coverage) {
+std::string calibrationSummary(const Calibration& calibration, const ViewCoverage& coverage) {
   const Camera& camera = calibration.camera;
   std::string text = formatted("%d x %d px, %s\n", camera.width, camera.height, modelName(camera));
   for (const Parameter& p : parametersOf(calibration)) {

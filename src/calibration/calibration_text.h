@@ -12,6 +12,6 @@ namespace edgeslam {
 std::string calibrationFileText(const Calibration& calibration, const Board& board, const std::string& source);
 
 // The result for people, several lines.
-std::string calibrationSummary(const Calibration& calibration, const Coverage& coverage);
+std::string calibrationSummary(const Calibration& calibration, const ViewCoverage& coverage);
 
 }  // namespace edgeslam

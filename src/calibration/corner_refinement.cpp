@@ -9,15 +9,15 @@
 namespace edgeslam {
 namespace {
 
-constexpr int parameters = 7;       // shift x, y [px]; level, its slope along x, y; contrast; blur [px]
-constexpr int largest_window = 13;  // half the side [px]
+constexpr int pattern_parameters = 7;       // shift x, y [px]; level, its slope along x, y; contrast; blur [px]
+constexpr int largest_pattern_window = 13;  // half the side [px]
 constexpr std::size_t fewest_pixels = 20;
 constexpr double largest_shift_px = 1.5;
 constexpr double least_contrast = 4;     // half the step from black to white [grey]
 constexpr double largest_misfit = 0.35;  // deviation of the grey values from the pattern over the contrast
 
-using ParameterVector = Eigen::Matrix<double, parameters, 1>;
-using ParameterMatrix = Eigen::Matrix<double, parameters, parameters>;
+using ParameterVector = Eigen::Matrix<double, pattern_parameters, 1>;
+using ParameterMatrix = Eigen::Matrix<double, pattern_parameters, pattern_parameters>;
 
 // What may be looked at about a corner, in the board frame.
 struct Surroundings {
@@ -53,7 +53,8 @@ Eigen::Vector2d placeOnBoard(const Camera& camera, const Pose& board_T_camera, c
 std::vector<Sample> samplesAbout(const cv::Mat& grey, const Surroundings& surroundings, const Camera& camera,
                                  const Pose& board_T_camera, const MeasuredCorner& corner, double pixel_m) {
   std::vector<Sample> samples;
-  const int half = std::clamp(static_cast<int>(std::ceil(1.5 * surroundings.reach_m / pixel_m)), 2, largest_window);
+  const int half =
+      std::clamp(static_cast<int>(std::ceil(1.5 * surroundings.reach_m / pixel_m)), 2, largest_pattern_window);
   const int x0 = static_cast<int>(std::lround(corner.pixel.x())), y0 = static_cast<int>(std::lround(corner.pixel.y()));
   for (int y = std::max(0, y0 - half); y <= std::min(grey.rows - 1, y0 + half); ++y) {
     for (int x = std::max(0, x0 - half); x <= std::min(grey.cols - 1, x0 + half); ++x) {
@@ -149,7 +150,7 @@ std::optional<RefinedCorner> refineCorner(const cv::Mat& grey, const Board& boar
     if (!(p.head<2>().norm() < largest_shift_px)) return std::nullopt;
     if (step.head<2>().norm() < 1e-4 && iteration > 1) break;
   }
-  const double variance = misfit / static_cast<double>(samples.size() - parameters);
+  const double variance = misfit / static_cast<double>(samples.size() - pattern_parameters);
   if (!(std::abs(p(5)) > least_contrast) || !(std::sqrt(variance) < largest_misfit * std::abs(p(5))))
     return std::nullopt;
   const ParameterMatrix covariance = variance * information.inverse();

@@ -15,9 +15,9 @@ constexpr double least_filled = 0.04;
 constexpr std::array<const char*, 9> kRegions{"top left", "top",         "top right", "left",        "middle",
                                               "right",    "bottom left", "bottom",    "bottom right"};
 
-int tilted(const Coverage& c) { return c.tilted_left + c.tilted_right + c.tilted_up + c.tilted_down; }
+int tilted(const ViewCoverage& c) { return c.tilted_left + c.tilted_right + c.tilted_up + c.tilted_down; }
 
-std::string regionsWithFewerThan(const Coverage& coverage, int views, bool corners_only) {
+std::string regionsWithFewerThan(const ViewCoverage& coverage, int views, bool corners_only) {
   std::string names;
   for (std::size_t i = 0; i < kRegions.size(); ++i) {
     const bool is_corner = i == 0 || i == 2 || i == 6 || i == 8;
@@ -31,15 +31,15 @@ std::string percent(double share) { return std::to_string(std::lround(100 * shar
 
 }  // namespace
 
-double Coverage::share() const {
+double ViewCoverage::share() const {
   int covered = 0;
   for (const auto& row : corners)
     covered += static_cast<int>(std::count_if(row.begin(), row.end(), [](int n) { return n > 0; }));
   return static_cast<double>(covered) / (coverage_columns * coverage_rows);
 }
 
-Coverage coverageOf(const std::vector<BoardView>& views, cv::Size size) {
-  Coverage coverage;
+ViewCoverage coverageOf(const std::vector<BoardView>& views, cv::Size size) {
+  ViewCoverage coverage;
   coverage.views = static_cast<int>(views.size());
   for (const BoardView& view : views) {
     std::array<bool, 9> seen{};
@@ -63,7 +63,7 @@ Coverage coverageOf(const std::vector<BoardView>& views, cv::Size size) {
   return coverage;
 }
 
-std::vector<std::string> missingViews(const Coverage& coverage) {
+std::vector<std::string> missingViews(const ViewCoverage& coverage) {
   std::vector<std::string> wishes;
   const std::string regions = regionsWithFewerThan(coverage, 2, false);
   if (!regions.empty()) wishes.push_back("show the board in these parts of the image: " + regions);
@@ -86,7 +86,7 @@ std::vector<std::string> missingViews(const Coverage& coverage) {
   return wishes;
 }
 
-std::vector<std::string> coverageProblems(const Coverage& coverage) {
+std::vector<std::string> coverageProblems(const ViewCoverage& coverage) {
   std::vector<std::string> problems;
   if (coverage.views < fewest_views) {
     problems.push_back("there are " + std::to_string(coverage.views) + " usable views, at least " +
@@ -106,7 +106,7 @@ std::vector<std::string> coverageProblems(const Coverage& coverage) {
   return problems;
 }
 
-std::vector<std::string> coverageMap(const Coverage& coverage) {
+std::vector<std::string> coverageMap(const ViewCoverage& coverage) {
   constexpr int many = 20;
   std::vector<std::string> lines;
   for (const auto& row : coverage.corners) {

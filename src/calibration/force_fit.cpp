@@ -22,10 +22,10 @@ constexpr double bias_prior = 0.5;     // [m/s^2]
 constexpr int iterations = 12;
 constexpr double largest_scale_sigma = 0.05, largest_bias_sigma = 0.05, largest_place_sigma_m = 0.01;
 
-constexpr int unknowns = 9;  // scale; tilts of gravity (2) [rad]; bias (3); camera_t_imu (3)
-using Vector9 = Eigen::Matrix<double, unknowns, 1>;
-using Matrix9 = Eigen::Matrix<double, unknowns, unknowns>;
-using Matrix39 = Eigen::Matrix<double, 3, unknowns>;
+constexpr int force_unknowns = 9;  // scale; tilts of gravity (2) [rad]; bias (3); camera_t_imu (3)
+using Vector9 = Eigen::Matrix<double, force_unknowns, 1>;
+using Matrix9 = Eigen::Matrix<double, force_unknowns, force_unknowns>;
+using Matrix39 = Eigen::Matrix<double, 3, force_unknowns>;
 
 // How the mean speed changes between the two halves of three poses, which knows no speed: as seen [map units/s], and as
 // felt [m/s] without gravity, bias and lever arm, each of which adds its share.
@@ -172,18 +172,18 @@ Vector9 priorInformation() {
   return information;
 }
 
-struct NormalEquations {
+struct ForceEquations {
   Matrix9 information = Matrix9::Zero();
   Vector9 gradient = Vector9::Zero();
   Matrix9 scatter = Matrix9::Zero();  // of what parts of the recording add to the gradient
 };
 
-NormalEquations normalEquations(const std::vector<SpeedChange>& changes, const Unknowns& x,
-                                const Eigen::Vector3d& camera_t_imu) {
+ForceEquations forceEquations(const std::vector<SpeedChange>& changes, const Unknowns& x,
+                              const Eigen::Vector3d& camera_t_imu) {
   const Weights weights = weightsOf(changes, x);
   const std::int64_t begin_ns = changes.front().from_ns;
   const std::int64_t part_ns = partLength(begin_ns, changes.back().from_ns);
-  NormalEquations equations;
+  ForceEquations equations;
   std::map<std::int64_t, Vector9> parts;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const Matrix39 by = derivativeOf(changes[i], x);
@@ -195,7 +195,7 @@ NormalEquations normalEquations(const std::vector<SpeedChange>& changes, const U
   }
   for (const auto& [number, gradient] : parts) equations.scatter += gradient * gradient.transpose();
   const double count = static_cast<double>(parts.size());
-  equations.scatter *= unseen_times * unseen_times * count / std::max(1.0, count - unknowns);
+  equations.scatter *= unseen_times * unseen_times * count / std::max(1.0, count - force_unknowns);
   const Vector9 prior = priorInformation();
   equations.information.diagonal() += prior;
   equations.scatter.diagonal() += prior;
@@ -241,7 +241,7 @@ std::optional<ForceFit> fitForces(const std::vector<PosedCamera>& poses, const s
   Unknowns x = *start;
   Matrix9 covariance = Matrix9::Zero();
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    const NormalEquations equations = normalEquations(changes, x, camera_t_imu);
+    const ForceEquations equations = forceEquations(changes, x, camera_t_imu);
     const Eigen::LDLT<Matrix9> factor(equations.information);
     if (factor.info() != Eigen::Success) return std::nullopt;
     const Matrix9 inverse = factor.solve(Matrix9::Identity());

@@ -14,13 +14,13 @@
 namespace edgeslam {
 namespace {
 
-constexpr double detected_sigma_px = 0.15;  // of corners as they are detected
-constexpr double refined_sigma_px = 0.01;   // least, whatever the grey values say
-constexpr double outlier = 5;               // standard deviations
-constexpr double least_outlier_px = 0.1;    // nothing is left out for less
-constexpr double outlier_view = 3;          // times the median view's error
-constexpr double significant = 4;           // standard deviations of a coefficient
-constexpr std::size_t fewest_corners = 6;   // of a view
+constexpr double detected_sigma_px = 0.15;        // of corners as they are detected
+constexpr double refined_sigma_px = 0.01;         // least, whatever the grey values say
+constexpr double outlier = 5;                     // standard deviations
+constexpr double least_outlier_px = 0.1;          // nothing is left out for less
+constexpr double outlier_view = 3;                // times the median view's error
+constexpr double significant = 4;                 // standard deviations of a coefficient
+constexpr std::size_t fewest_fitted_corners = 6;  // of a view
 constexpr int refinements = 2;
 
 std::string errorText(double value) { return formatted("%.2f px", value); }
@@ -97,7 +97,7 @@ int dropOutlierCorners(const Camera& camera, std::vector<ImagedView>& views) {
 void dropPoorViews(ModelFit& fit) {
   std::vector<ImagedView> kept;
   for (const ImagedView& view : fit.views) {
-    if (view.fitted.corners.size() >= fewest_corners) {
+    if (view.fitted.corners.size() >= fewest_fitted_corners) {
       kept.push_back(view);
     } else {
       fit.remarks.push_back("frame " + std::to_string(view.frame) +

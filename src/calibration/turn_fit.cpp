@@ -12,7 +12,7 @@ namespace edgeslam {
 namespace {
 
 constexpr int most_iterations = 20;
-constexpr std::size_t unknowns = 7;
+constexpr std::size_t turn_unknowns = 7;
 
 struct TimedError {
   std::int64_t from_ns = 0;
@@ -39,13 +39,13 @@ std::vector<double> weightsOf(const std::vector<TimedError>& errors) {
   return cauchyWeights(lengths);
 }
 
-struct NormalEquations {
+struct TurnEquations {
   Matrix7d information = Matrix7d::Zero();
   Vector7d gradient = Vector7d::Zero();
 };
 
-NormalEquations normalEquations(const std::vector<TimedError>& errors, const std::vector<double>& weights) {
-  NormalEquations equations;
+TurnEquations turnEquations(const std::vector<TimedError>& errors, const std::vector<double>& weights) {
+  TurnEquations equations;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const TurnError& turn = errors[i].turn;
     equations.information += weights[i] * turn.by_parameters.transpose() * turn.by_parameters;
@@ -102,7 +102,7 @@ Matrix7d scatterOf(const std::vector<Vector7d>& gradients) {
   Matrix7d scatter = Matrix7d::Zero();
   for (const Vector7d& gradient : gradients) scatter += gradient * gradient.transpose();
   const double parts = static_cast<double>(gradients.size());
-  return unseen_times * unseen_times * parts / (parts - unknowns) * scatter;
+  return unseen_times * unseen_times * parts / (parts - turn_unknowns) * scatter;
 }
 
 double coveredSeconds(const std::vector<TimedError>& errors) {
@@ -158,10 +158,10 @@ std::optional<TurnFit> fitTurns(const std::vector<CameraTurn>& turns, const std:
     const std::vector<TimedError> errors = errorsOf(turns, samples, fit.parameters);
     if (errors.size() < fewest_turns) return std::nullopt;
     const std::vector<double> weights = weightsOf(errors);
-    const NormalEquations equations = normalEquations(errors, weights);
+    const TurnEquations equations = turnEquations(errors, weights);
     const std::optional<Matrix7d> inverse = inverseOf(equations.information);
     const std::vector<Vector7d> gradients = gradientsOfParts(errors, weights);
-    if (!inverse || gradients.size() <= unknowns) return std::nullopt;
+    if (!inverse || gradients.size() <= turn_unknowns) return std::nullopt;
     const Matrix7d scatter = scatterOf(gradients) + gradientOfWalk(errors, weights, rate_walk);
     fit.covariance = *inverse * scatter * *inverse;
     fit.turns = errors.size();

@@ -234,7 +234,7 @@ std::string formatCameraSection(const Configuration& configuration) {
   } else if (configuration.readout_s) {
     text += "  readout: " + numberText(*configuration.readout_s) + "\n";
   }
-  if (configuration.mask) text += "  mask: " + quoted(configuration.mask_path) + "\n";
+  if (configuration.mask) text += "  mask: " + inQuotes(configuration.mask_path) + "\n";
   text += "  body_T_camera: " + formatPose(configuration.body_T_camera) + "\n";
   return text;
 }

@@ -143,9 +143,9 @@ std::string formatCaptureSection(const CameraOptions& options) {
   std::string own;
   for (const ControlSetting& control : options.controls) {
     if (isSharedControl(control.name)) {
-      append(control.name, quoted(control.value));
+      append(control.name, inQuotes(control.value));
     } else {
-      own += (own.empty() ? "" : ", ") + quoted(control.name) + ": " + quoted(control.value);
+      own += (own.empty() ? "" : ", ") + inQuotes(control.name) + ": " + inQuotes(control.value);
     }
   }
   if (!own.empty()) append("controls", "{" + own + "}");

@@ -49,7 +49,7 @@ std::string formatImuSection(const InertiaConfiguration& inertia) {
   if (!inertia.is_used && !inertia.has_unit) return "";
   const InertialUnit& unit = inertia.unit;
   std::string text = std::string("imu:\n  enabled: ") + (inertia.is_used ? "true" : "false") +
-                     "\n  channel: " + quoted(inertia.channel) + "\n";
+                     "\n  channel: " + inQuotes(inertia.channel) + "\n";
   if (inertia.has_unit) text += "  imu_T_camera: " + formatPose(unit.imu_T_camera) + "\n";
   return text + "  gyroscope_noise_density: " + numberText(unit.rate_noise) +
          "\n  gyroscope_random_walk: " + numberText(unit.rate_walk) +

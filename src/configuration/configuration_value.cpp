@@ -22,7 +22,7 @@ std::string valueText(const ConfigurationField& field) {
   if (const auto* number = std::get_if<double*>(&field)) return numberText(**number);
   if (const auto* count = std::get_if<int*>(&field)) return std::to_string(**count);
   if (const auto* flag = std::get_if<bool*>(&field)) return **flag ? "true" : "false";
-  if (const auto* text = std::get_if<std::string*>(&field)) return quoted(**text);
+  if (const auto* text = std::get_if<std::string*>(&field)) return inQuotes(**text);
   return "";
 }
 
@@ -68,7 +68,7 @@ std::string setValue(const ConfigurationKey& key, const std::string& text) {
   return "";
 }
 
-std::string quoted(const std::string& text) {
+std::string inQuotes(const std::string& text) {
   YAML::Emitter emitter;
   if (text.find_first_of(",[]{}") != std::string::npos) emitter << YAML::DoubleQuoted;
   emitter << text;

@@ -40,6 +40,6 @@ std::string setValue(const ConfigurationKey& key, const std::string& text);
 bool parseNumber(const std::string& text, double& value);
 
 // As YAML, also inside of "{...}", where a comma or bracket would end a word.
-std::string quoted(const std::string& text);
+std::string inQuotes(const std::string& text);
 
 }  // namespace edgeslam

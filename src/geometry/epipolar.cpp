@@ -13,6 +13,7 @@
 
 #include "geometry/median.h"
 #include "geometry/relative_rotation.h"
+#include "geometry/robust_estimation.h"
 #include "geometry/tangents.h"
 
 namespace edgeslam {
@@ -21,11 +22,8 @@ namespace {
 using Bearings = std::vector<Eigen::Vector3d>;
 
 constexpr int least_matches = 8;
-constexpr double least_z = 0.05;            // of a bearing, for a place on the normalized image plane
 constexpr double rotation_only_from = 0.9;  // share of matches from which a rotation explains all there is
-constexpr double ransac_confidence = 0.999;
-constexpr int ransac_iterations = 1000;  // at most
-constexpr int most_refinements = 15;
+constexpr int ransac_iterations = 1000;     // at most
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));

@@ -26,6 +26,8 @@ struct Pose {
   }
 };
 
+inline bool isFinite(const Pose& pose) { return pose.translation.allFinite() && pose.rotation.coeffs().allFinite(); }
+
 inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;

@@ -9,6 +9,7 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
+#include "geometry/robust_estimation.h"
 #include "geometry/three_point_pose.h"
 
 namespace edgeslam {
@@ -19,9 +20,6 @@ using Indices = std::pmr::vector<std::size_t>;
 
 constexpr std::size_t least_points = 6;
 constexpr std::size_t sample_size = 4;  // three for P3P, one to choose among its solutions
-constexpr double least_z = 0.05;        // of a bearing, for a place on the normalized image plane
-constexpr double ransac_confidence = 0.999;
-constexpr int most_refinements = 15;
 
 // Correspondences in the form OpenCV asks for, with the identity as camera matrix.
 struct Normalized {

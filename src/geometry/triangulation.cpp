@@ -20,8 +20,8 @@ struct Residual {
 
 // A fisheye sees beyond 90 degrees.
 bool isAhead(const Camera& camera, const Eigen::Vector3d& point) {
-  const double least_z = camera.model == CameraModel::kannala_brandt ? -0.5 : 0.02;
-  return point.z() > least_z * point.norm();
+  const double least_cosine = camera.model == CameraModel::kannala_brandt ? -0.5 : 0.02;
+  return point.z() > least_cosine * point.norm();
 }
 
 // A polynomial distortion folds back far outside the image, where its derivative (symmetric but for fx and fy) is no

@@ -21,6 +21,8 @@ std::optional<ImageFormat> imageFormat(std::string_view bytes);
 // What the file is where it is an image of another format, as "a TIFF image"; otherwise empty.
 std::string otherImageFormat(std::string_view bytes);
 
+constexpr std::int64_t most_pixels = std::int64_t{1} << 26;  // of an image that is read
+
 // [px]; what a header claims, so any values.
 struct ClaimedSize {
   std::int64_t width = 0, height = 0;

@@ -6,10 +6,11 @@
 #include <memory>
 #include <new>
 
+#include "image_formats/image_header.h"
+
 namespace edgeslam {
 namespace {
 
-constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
 constexpr int most_scans = 64;  // encoders make some ten of a progressive image
 
 const unsigned char* pointer(std::string_view bytes) { return reinterpret_cast<const unsigned char*>(bytes.data()); }

@@ -7,13 +7,14 @@
 #include <optional>
 #include <string>
 
+#include "image_formats/image_header.h"
+
 namespace edgeslam {
 namespace {
 
-constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
 constexpr std::int64_t too_many = 1'000'000'000;
 
-struct Header {
+struct NetpbmHeader {
   std::int64_t width = 0, height = 0, largest = 0;
   std::size_t size = 0;  // [byte]
 };
@@ -22,7 +23,7 @@ bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; 
 bool isDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 // Three decimal numbers after the two letters, parted by blanks and comments; one blank ends them.
-std::optional<Header> readHeader(std::string_view bytes) {
+std::optional<NetpbmHeader> readHeader(std::string_view bytes) {
   std::array<std::int64_t, 3> numbers{};
   std::size_t at = 2;
   for (std::int64_t& number : numbers) {
@@ -33,7 +34,7 @@ std::optional<Header> readHeader(std::string_view bytes) {
     for (; at < bytes.size() && isDigit(bytes[at]); ++at) number = std::min(number * 10 + (bytes[at] - '0'), too_many);
   }
   if (at == bytes.size() || !isBlank(bytes[at])) return std::nullopt;
-  return Header{numbers[0], numbers[1], numbers[2], at + 1};
+  return NetpbmHeader{numbers[0], numbers[1], numbers[2], at + 1};
 }
 
 // The weights in 14 bits.
@@ -44,7 +45,7 @@ std::int64_t greyOf(std::int64_t red, std::int64_t green, std::int64_t blue) {
 }  // namespace
 
 cv::Mat decodeNetpbm(std::string_view bytes) {
-  const std::optional<Header> header = readHeader(bytes);
+  const std::optional<NetpbmHeader> header = readHeader(bytes);
   if (!header || header->width < 1 || header->height < 1 || header->largest < 1 || header->largest > 65535) return {};
   if (header->width > most_pixels || header->height > most_pixels || header->width * header->height > most_pixels) {
     return {};

@@ -8,10 +8,11 @@
 #include <cstring>
 #include <new>
 
+#include "image_formats/image_header.h"
+
 namespace edgeslam {
 namespace {
 
-constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26;
 // What a chunk beside the image may be inflated to, and how many are kept: none of them is looked at.
 constexpr png_alloc_size_t largest_chunk = 1 << 20;
 constexpr png_uint_32 most_chunks = 16;
@@ -56,13 +57,13 @@ class Reader {
   png_infop info_ = nullptr;
 };
 
-struct Header {
+struct PngHeader {
   png_uint_32 width, height;
   int bits;
 };
 
 // Without destructors. False where it is damaged.
-bool readHeader(png_structp png, png_infop info, Input* input, Header* header) {
+bool readHeader(png_structp png, png_infop info, Input* input, PngHeader* header) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, input, readBytes);
   png_set_chunk_malloc_max(png, largest_chunk);
@@ -168,9 +169,9 @@ bool writeAll(png_structp png, png_infop info, const cv::Mat* image, Packing pac
 cv::Mat decodePng(std::string_view bytes) {
   const Reader reader;
   Input input{bytes.data(), bytes.size(), 0};
-  Header header{};
+  PngHeader header{};
   if (!readHeader(reader.png(), reader.info(), &input, &header)) return {};
-  if (std::uint64_t{header.width} * header.height > most_pixels) return {};
+  if (std::uint64_t{header.width} * header.height > static_cast<std::uint64_t>(most_pixels)) return {};
   cv::Mat grey(static_cast<int>(header.height), static_cast<int>(header.width), header.bits == 16 ? CV_16U : CV_8U);
   std::vector<png_bytep> rows(header.height);
   for (int y = 0; y < grey.rows; ++y) rows[static_cast<std::size_t>(y)] = grey.ptr(y);

@@ -35,6 +35,9 @@ struct Map {
   FoundCamera found;                         // what all rays here were taken with
 };
 
+// A keyframe to read, of a map that may be changed too.
+inline const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
+
 // Position in the world frame.
 inline Eigen::Vector3d worldPosition(const Map& map, const MapPoint& point) {
   return map.keyframes[point.host].world_T_camera * (point.host_bearing / point.inverse_depth);

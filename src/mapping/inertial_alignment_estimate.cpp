@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/median.h"
+#include "geometry/squared.h"
 #include "geometry/tangents.h"
 #include "mapping/inertial_terms.h"
 
@@ -22,8 +23,6 @@ constexpr double largest_turn_error = 0.3;     // of what the gyroscope contradi
 constexpr double largest_turn_error_rad = 0.1;
 constexpr double least_scale_sigma = 3e-3;  // of what is known, share of it: the map bends
 constexpr int iterations = 8;
-
-double squared(double value) { return value * value; }
 
 // Of one world, the latest ones, ascending.
 std::vector<const Keyframe*> latestKeyframes(const Map& map, int world, int most) {

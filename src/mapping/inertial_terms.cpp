@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry/squared.h"
 #include "geometry/uncertainty.h"
 
 namespace edgeslam {
@@ -13,8 +14,6 @@ constexpr double least_speed_sigma = 2e-3;  // [m/s]
 // Standard deviations of the biases, where they are adjusted.
 constexpr double free_rate_bias_sigma = 0.02;  // [rad/s]
 constexpr double free_force_bias_sigma = 0.3;  // [m/s^2]
-
-double squared(double value) { return value * value; }
 
 BundleTurn turnOf(const InertialLink& link, const InertialBias& bias, double rate_bias_sigma,
                   const Eigen::Quaterniond& camera_R_imu, int first, int second) {

@@ -14,7 +14,7 @@ namespace edgeslam {
 namespace {
 
 constexpr std::size_t fewest_depths = 20;
-constexpr double largest_depth_sigma = 0.5;  // share of the inverse depth
+constexpr double largest_start_sigma = 0.5;  // share of the inverse depth
 
 InitialStart startOf(std::string method, const InitialFrames& frames, const InitialisationOptions& options) {
   InitialStart start;
@@ -27,7 +27,7 @@ InitialStart startOf(std::string method, const InitialFrames& frames, const Init
 double triangulatedInverseDepth(const Camera& camera, const PointObservation& first,
                                 const std::vector<TriangulationView>& views) {
   const TriangulationResult point = triangulate(camera, first.bearing, views);
-  if (!point.converged || point.sigma > largest_depth_sigma * point.inverse_depth) return 0;
+  if (!point.converged || point.sigma > largest_start_sigma * point.inverse_depth) return 0;
   return point.inverse_depth;
 }
 

@@ -9,6 +9,7 @@
 
 #include "adjustment/pose_adjustment.h"
 #include "geometry/median.h"
+#include "geometry/squared.h"
 #include "map/worlds.h"
 
 namespace edgeslam {
@@ -77,8 +78,6 @@ SharedPoints pointsSharedWith(const Camera& camera, const MapUncertaintyOptions&
   }
   return shared;
 }
-
-double squared(double value) { return value * value; }
 
 // What the points that both see leave open of `keyframe` relative to `other`, and how far the way between them leads
 // astray.

@@ -10,8 +10,6 @@
 namespace edgeslam {
 namespace {
 
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
-
 // Where a keyframe's camera was as it read the row of an observation.
 Pose poseInRow(const Camera& camera, const Keyframe& keyframe, const PointObservation& seen) {
   return worldTRow(camera, {keyframe.world_T_camera, keyframe.twist}, seen.measurement.pixel.y());

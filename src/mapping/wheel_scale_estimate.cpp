@@ -6,6 +6,7 @@
 
 #include "files/format_text.h"
 #include "geometry/scale_estimate.h"
+#include "geometry/squared.h"
 
 namespace edgeslam {
 namespace {
@@ -14,8 +15,6 @@ constexpr double largest_angle_between_ways = 0.35;  // [rad]: else they are not
 constexpr double turn_allowance = 0.1;               // likewise, [rad] and share of the turn
 constexpr double camera_sigma = 0.02;                // of the camera's way, as a share: keyframes bend
 constexpr double least_camera_sigma = 0.002;         // likewise, a share of the scene's distance, which is about 1
-
-double squared(double value) { return value * value; }
 
 struct Stretches {
   std::vector<ScaleMeasurement> measurements;

@@ -1,12 +1,6 @@
 #include "pipeline/live_channels.h"
 
 namespace edgeslam {
-namespace {
-
-constexpr std::size_t longest_reason = 256;
-
-}  // namespace
-
 LiveChannels::LiveChannels(int width, int height, std::size_t observations) : frames(width, height) {
   messages.forEachSlot([&](MappingMessage& message) {
     message.frame.observations.reserve(observations);

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -29,6 +30,8 @@ struct PublishedFrame {
 struct AppliedCorrection {
   std::int64_t message = 0, number = 0;
 };
+
+constexpr std::chrono::milliseconds idle_time{1};  // before a thread looks again for what it waits for
 
 enum class Stopping { no, settle, at_once };
 

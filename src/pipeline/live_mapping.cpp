@@ -6,11 +6,7 @@
 #include <utility>
 
 namespace edgeslam {
-namespace {
-
-constexpr auto idle_time = std::chrono::milliseconds(1);
-
-}  // namespace
+namespace {}  // namespace
 
 void LiveMapping::goOnWith(Map map) {
   worker_.goOnWith(std::move(map));

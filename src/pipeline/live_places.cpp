@@ -5,11 +5,7 @@
 #include <utility>
 
 namespace edgeslam {
-namespace {
-
-constexpr auto idle_time = std::chrono::milliseconds(1);
-
-}  // namespace
+namespace {}  // namespace
 
 void LivePlaces::run() {
   while (true) {

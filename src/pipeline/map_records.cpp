@@ -25,19 +25,19 @@ void writeDirections(std::vector<MapPointRecord>& records) {
 }
 
 // A point's place among the records, and in its host's image.
-struct HostedPoint {
+struct HostedRecord {
   std::size_t record = 0;
   Eigen::Vector2d pixel;
 };
 
 // Host by host: images that are packed are unpacked once, and one at a time.
-void writeGreys(const Camera& camera, const Keyframe& host, const std::vector<HostedPoint>& points,
+void writeGreys(const Camera& camera, const Keyframe& host, const std::vector<HostedRecord>& points,
                 std::vector<MapPointRecord>& records) {
   if (!host.images) return;
   {
     const std::shared_ptr<const FrameImages> images = host.images.get();
     const cv::Mat& grey = images->pyramid.levels[0];
-    for (const HostedPoint& point : points) {
+    for (const HostedRecord& point : points) {
       if (!insideImage(camera, point.pixel, 1)) continue;
       records[point.record].grey =
           grey.at<unsigned char>(static_cast<int>(point.pixel.y() + 0.5), static_cast<int>(point.pixel.x() + 0.5));
@@ -70,7 +70,7 @@ std::vector<MapPointRecord> mapPointRecords(const Map& map, const Camera& camera
   std::map<ChainKey, std::vector<const MapPoint*>> chains;
   for (const auto& [id, point] : map.points) chains[{point.chain_keyframe, point.chain}].push_back(&point);
   std::vector<MapPointRecord> records;
-  std::map<KeyframeId, std::vector<HostedPoint>> hosted;
+  std::map<KeyframeId, std::vector<HostedRecord>> hosted;
   int chain_number = 0;
   for (auto& [key, points] : chains) {
     std::stable_sort(points.begin(), points.end(),

@@ -6,7 +6,6 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::size_t longest_reason = 256;
 constexpr std::int64_t search_interval_ns = 100'000'000;  // while a world is begun, which must not wait for searches
 constexpr std::int64_t doubt_interval_ns =
     200'000'000;                        // while poses are in doubt, and mapping has keyframes to see to

@@ -7,14 +7,11 @@
 #include "flow/patch_alignment.h"
 #include "geometry/angles.h"
 #include "geometry/camera_mask.h"
+#include "places/place_view.h"
 #include "tracking/patch_refinement.h"
 
 namespace edgeslam {
 namespace {
-
-constexpr double image_border = 8;  // [px]
-
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
 // The keyframe, among those that see a point and have images, from where it is seen most like from `centre` (world
 // frame): at the smallest angle, of those within a few degrees the one at the most similar distance. -1 where there is

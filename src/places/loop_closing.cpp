@@ -10,8 +10,6 @@
 namespace edgeslam {
 namespace {
 
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
-
 bool areOfOneWorld(const Map& map, KeyframeId a, KeyframeId b) {
   return keyframeOf(map, a).world == keyframeOf(map, b).world;
 }

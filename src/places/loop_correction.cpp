@@ -11,8 +11,6 @@
 namespace edgeslam {
 namespace {
 
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
-
 Similarity similarityOf(const Pose& pose) { return {1, pose.rotation, pose.translation}; }
 
 double medianDistance(const PlaceView& view) {

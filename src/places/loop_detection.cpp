@@ -8,8 +8,6 @@
 namespace edgeslam {
 namespace {
 
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
-
 // P24: the lowest score among the keyframes before the current one that look about the same way.
 double barOf(const Map& map, KeyframeId current, const std::vector<double>& scores,
              const LoopDetectionOptions& options) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <optional>
 
+#include "files/format_text.h"
 #include "places/thumbnail.h"
 #include "tracking/measured_noise.h"
 
@@ -14,13 +14,6 @@ namespace edgeslam {
 namespace {
 
 constexpr double degree = M_PI / 180;
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[160];
-  std::snprintf(buffer, sizeof(buffer), format, values...);
-  return buffer;
-}
 
 // The points around the candidate that the current side does not see: what it sees says nothing about the loop.
 std::vector<PointId> pointsOfOldSide(const Map& map, KeyframeId current, KeyframeId candidate, int neighbours) {
@@ -115,8 +108,8 @@ std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector
     const double shares = search.evidence.share() + search.evidence.explained;
     if (search.accepted && shares < options_.found_and_explained) {
       search.accepted = false;
-      search.reason = text("%.0f %% of the points found, %.0f %% of the edges explained", 100 * search.evidence.share(),
-                           100 * search.evidence.explained);
+      search.reason = formatted("%.0f %% of the points found, %.0f %% of the edges explained",
+                                100 * search.evidence.share(), 100 * search.evidence.explained);
     }
     if (!search.accepted) {
       if (!best.search.accepted) reason = search.reason;
@@ -130,24 +123,24 @@ std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector
   const ScalePairs pairs = pairsOf(keyframe, best.search, best.found);
   const ScaleEstimate scale = estimateScale(pairs);
   if (static_cast<int>(pairs.log_ratios.size()) < options_.fewest_pairs) {
-    reason = text("%zu points on both sides, %d needed", pairs.log_ratios.size(), options_.fewest_pairs);
+    reason = formatted("%zu points on both sides, %d needed", pairs.log_ratios.size(), options_.fewest_pairs);
     return std::nullopt;
   }
   if (scale.agreeing_share < options_.agreeing_share) {
-    reason = text("%.0f %% of the depths agree", 100 * scale.agreeing_share);
+    reason = formatted("%.0f %% of the depths agree", 100 * scale.agreeing_share);
     return std::nullopt;
   }
   if (!(scale.deviation < options_.scale_deviation)) {
-    reason = text("scale known to %.0f %%", 100 * scale.deviation);
+    reason = formatted("scale known to %.0f %%", 100 * scale.deviation);
     return std::nullopt;
   }
   const Pose keyframe_T_candidate =
       best.search.pose.world_T_camera.inverse() * map_.keyframes[candidate_].world_T_camera;
   const double ratio = std::exp(scale.log_scale);
   best.keyframe_S_candidate = {ratio, keyframe_T_candidate.rotation, ratio * keyframe_T_candidate.translation};
-  reason = text("%d of %d points, %.0f %% explained, scale %.3f +- %.3f from %zu", best.search.evidence.inliers,
-                best.search.evidence.visible, 100 * best.search.evidence.explained, ratio, scale.deviation,
-                pairs.log_ratios.size());
+  reason = formatted("%d of %d points, %.0f %% explained, scale %.3f +- %.3f from %zu", best.search.evidence.inliers,
+                     best.search.evidence.visible, 100 * best.search.evidence.explained, ratio, scale.deviation,
+                     pairs.log_ratios.size());
   return best;
 }
 
@@ -268,13 +261,13 @@ LoopVerification verifyLoopBySearch(const Camera& camera, const ImageReading& re
         search.locate(keyframe.id, {search.predicted(keyframe.id, current, here->keyframe_S_candidate)}, reason);
     if (!witness) continue;
     if (contradicts(search.carried(current, keyframe.id, witness->keyframe_S_candidate))) {
-      result.reason += text("; keyframe %d contradicts", keyframe.id);
+      result.reason += formatted("; keyframe %d contradicts", keyframe.id);
       return result;
     }
     ++witnesses;
   }
   result.accepted = witnesses >= options.fewest_witnesses;
-  result.reason += text("; %d of %d witnesses", witnesses, options.fewest_witnesses);
+  result.reason += formatted("; %d of %d witnesses", witnesses, options.fewest_witnesses);
   return result;
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
+#include "files/format_text.h"
 #include "places/loop_search.h"
 #include "places/similarity_estimation.h"
 #include "tracking/measured_noise.h"
@@ -85,13 +85,6 @@ int cellsWithInliers(const Camera& camera, const std::vector<PlaceCorrespondence
   return static_cast<int>(cells.size());
 }
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[160];
-  std::snprintf(buffer, sizeof(buffer), format, values...);
-  return buffer;
-}
-
 // What the current side sees too says where the map has it, not where it is.
 void keepOldSide(const Map& map, KeyframeId current, int neighbours, PlaceView& there) {
   const std::vector<PointId> seen_here = pointsAround(map, current, neighbours);
@@ -124,8 +117,8 @@ LoopVerification verifyByDescriptors(const Camera& camera, const Map& map, Keyfr
   result.inliers = first.inlier_count;
   result.current_S_candidate = first.current_S_candidate;
   if (!first.found) {
-    result.reason = text("descriptors: %d of %d agree, %d needed", first.inlier_count, result.descriptor_pairs,
-                         options.fewest_descriptor_inliers);
+    result.reason = formatted("descriptors: %d of %d agree, %d needed", first.inlier_count, result.descriptor_pairs,
+                              options.fewest_descriptor_inliers);
     return result;
   }
   result.inliers = 0;
@@ -161,18 +154,18 @@ LoopVerification verifyByDescriptors(const Camera& camera, const Map& map, Keyfr
   const double scale = result.current_S_candidate.scale;
 
   if (result.inliers < result.needed_inliers) {
-    result.reason = text("%d inliers, %d needed", result.inliers, result.needed_inliers);
+    result.reason = formatted("%d inliers, %d needed", result.inliers, result.needed_inliers);
   } else if (result.found_share < options.least_found_share) {
-    result.reason = text("%.0f %% of the points in view found, %.0f %% needed", 100 * result.found_share,
-                         100 * options.least_found_share);
+    result.reason = formatted("%.0f %% of the points in view found, %.0f %% needed", 100 * result.found_share,
+                              100 * options.least_found_share);
   } else if (cells < options.fewest_cells) {
-    result.reason = text("inliers in %d of 16 parts of the image, %d needed", cells, options.fewest_cells);
+    result.reason = formatted("inliers in %d of 16 parts of the image, %d needed", cells, options.fewest_cells);
   } else if (!(scale < options.largest_scale && scale > 1 / options.largest_scale)) {
-    result.reason = text("a change of scale by %.2f", scale);
+    result.reason = formatted("a change of scale by %.2f", scale);
   } else {
     result.accepted = result.accepted_by_descriptors = true;
-    result.reason = text("%d inliers of %d needed, %.0f %% of the points in view", result.inliers,
-                         result.needed_inliers, 100 * result.found_share);
+    result.reason = formatted("%d inliers of %d needed, %.0f %% of the points in view", result.inliers,
+                              result.needed_inliers, 100 * result.found_share);
   }
   return result;
 }
@@ -193,7 +186,7 @@ LoopVerification verifyLoop(const Camera& camera, const ImageReading& reading, c
   const double scale = result.current_S_candidate.scale;
   if (result.accepted && !(scale < options.largest_scale && scale > 1 / options.largest_scale)) {
     result.accepted = false;
-    result.reason = text("a change of scale by %.2f", scale);
+    result.reason = formatted("a change of scale by %.2f", scale);
   }
   result.reason = descriptors.reason + "; by search: " + result.reason;
   return result;

@@ -12,9 +12,6 @@ namespace edgeslam {
 namespace {
 
 constexpr double least_spacing = 3;  // [px]
-constexpr double image_border = 8;   // [px]
-
-const Keyframe& keyframeOf(const Map& map, KeyframeId id) { return map.keyframes[id]; }
 
 PlacePoint placePoint(const Map& map, const MapPoint& point, const Pose& camera_T_world) {
   PlacePoint placed;

@@ -11,6 +11,8 @@
 
 namespace edgeslam {
 
+constexpr double image_border = 8;  // points nearer to it are not looked at [px]
+
 struct PlacePoint {
   PointId id = 0;
   Eigen::Vector3d position;    // keyframe's camera frame [map units]

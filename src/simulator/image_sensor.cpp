@@ -13,9 +13,9 @@ constexpr double darkest_mean = 0.25;  // of the first frame's: the gain does no
 
 // Standard normal numbers to a good approximation: the sum of four 16-bit uniform numbers, scaled. Integers up to the
 // last step, so the same on every machine.
-class Noise {
+class SensorNoise {
  public:
-  explicit Noise(std::uint64_t seed) : generator_(seed) {}
+  explicit SensorNoise(std::uint64_t seed) : generator_(seed) {}
   float next() {
     const std::uint64_t bits = generator_();
     const std::uint64_t sum = (bits & 0xFFFFU) + ((bits >> 16U) & 0xFFFFU) + ((bits >> 32U) & 0xFFFFU) + (bits >> 48U);
@@ -34,7 +34,7 @@ double noiseAt(double grey, const SensorOptions& options) {
 }
 
 cv::Mat senseImage(const cv::Mat& radiance, double gain, const SensorOptions& options, std::uint64_t seed) {
-  Noise noise(seed);
+  SensorNoise noise(seed);
   cv::Mat grey(radiance.size(), CV_8U);
   const float centre_x = 0.5F * static_cast<float>(radiance.cols - 1),
               centre_y = 0.5F * static_cast<float>(radiance.rows - 1);

@@ -14,9 +14,9 @@ constexpr double after_last_frame_s = 0.05;
 constexpr double step_s = 1e-3;  // of the derivatives: what is faster no unit would follow
 
 // Normally distributed, by Box and Muller's method; the same seed gives the same numbers.
-class Noise {
+class InertialNoise {
  public:
-  explicit Noise(std::uint64_t seed) : generator_(seed * 0x9E3779B97F4A7C15U + 0x696E65727469U) {}
+  explicit InertialNoise(std::uint64_t seed) : generator_(seed * 0x9E3779B97F4A7C15U + 0x696E65727469U) {}
 
   Eigen::Vector3d of(double sigma) { return sigma * Eigen::Vector3d(next(), next(), next()); }
 
@@ -57,7 +57,7 @@ std::vector<InertialSample> simulateInertia(const SimulatedSequence& sequence) {
   const Pose camera_T_imu = unit.imu_T_camera.inverse();
   const double interval_s = 1 / simulated_inertial_rate_hz;
   const double last_s = static_cast<double>(sequence.time(sequence.size() - 1) - sequence.time(0)) * 1e-9;
-  Noise noise(sequence.options.seed);
+  InertialNoise noise(sequence.options.seed);
   InertialBias bias{noise.of(0.01), noise.of(0.1)};
   std::vector<InertialSample> samples;
   for (int i = 0; i * interval_s <= last_s + after_last_frame_s; ++i) {

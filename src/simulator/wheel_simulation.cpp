@@ -11,16 +11,16 @@
 namespace edgeslam {
 namespace {
 
-constexpr double after_last_frame_s = 0.05;
+constexpr double driving_after_last_frame_s = 0.05;
 constexpr double scale_error = 1.01;               // of the wheels' size
 constexpr double way_noise_per_root_metre = 0.01;  // [m/sqrt(m)]
 constexpr double turn_noise_per_root_radian = 0.01;
 constexpr double spinning_m_s = 0.5;  // faster than the robot moves
 
 // Normally distributed, by Box and Muller's method; the same seed gives the same numbers.
-class Noise {
+class WheelNoise {
  public:
-  explicit Noise(std::uint64_t seed) : generator_(seed * 0x9E3779B97F4A7C15U + 0x776865656C73U) {}
+  explicit WheelNoise(std::uint64_t seed) : generator_(seed * 0x9E3779B97F4A7C15U + 0x776865656C73U) {}
 
   double of(double sigma) { return sigma * std::sqrt(-2 * std::log(uniform())) * std::cos(2 * M_PI * uniform()); }
 
@@ -60,13 +60,13 @@ std::vector<OdometryPose> simulateWheels(const SimulatedSequence& sequence) {
     return std::any_of(sequence.options.slipped.begin(), sequence.options.slipped.end(),
                        [&](const FrameRange& range) { return range.contains(frame); });
   };
-  Noise noise(sequence.options.seed);
+  WheelNoise noise(sequence.options.seed);
   Pose before = poseAt(sequence.motion, 0);
   const double height = before.translation.z();
   const Eigen::Quaterniond level_R_camera = turnedBy(-heading(before)) * before.rotation;
   double x = before.translation.x(), y = before.translation.y(), direction = heading(before);
   std::vector<OdometryPose> poses;
-  for (int k = 0; k * interval_s <= last_s + after_last_frame_s; ++k) {
+  for (int k = 0; k * interval_s <= last_s + driving_after_last_frame_s; ++k) {
     const double time_s = k * interval_s;
     const Pose now = poseAt(sequence.motion, time_s);
     Step step = stepBetween(before, now);

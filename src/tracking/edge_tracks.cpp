@@ -5,8 +5,8 @@
 namespace edgeslam {
 namespace {
 
-constexpr float nearest_radius = 2;  // [px]
-constexpr float least_dot = 0.9F;    // of the normals of a track and the edge
+constexpr float nearest_radius = 2;       // [px]
+constexpr float least_normal_dot = 0.9F;  // of the normals of a track and the edge
 constexpr int fewest_tracks = 3;
 // Nearer to an end than this, where the edge meets others, a point is known along the edge as well, and no point of a
 // line only.
@@ -17,7 +17,7 @@ constexpr double sigma_across = 0.07;  // at each end [px]
 constexpr float longest_move = 2;      // [px]
 
 int straightEdgeAt(const EdgeMap& edges, const StraightEdges& straight, const Track& track) {
-  const int nearest = nearestEdgePoint(edges, track.pixel, track.normal, nearest_radius, least_dot);
+  const int nearest = nearestEdgePoint(edges, track.pixel, track.normal, nearest_radius, least_normal_dot);
   return nearest < 0 ? -1 : straightEdgeOf(straight, nearest, end_margin);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/squared.h"
+
 namespace edgeslam {
 namespace {
 
@@ -11,7 +13,6 @@ constexpr double longest_for_speed_s = 0.35, shortest_for_speed_s = 0.05;
 constexpr double tilt_sigma = 3e-3;         // [rad]
 constexpr double least_speed_sigma = 0.01;  // [m/s]
 
-double squared(double value) { return value * value; }
 double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return static_cast<double>(to_ns - from_ns) * 1e-9; }
 
 }  // namespace

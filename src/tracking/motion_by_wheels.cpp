@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/squared.h"
 #include "geometry/uncertainty.h"
 #include "wheels/utime.h"
 
@@ -23,8 +24,6 @@ constexpr double camera_way_share = 0.1;    // ... and share of the way
 // Wheels that move less stand.
 constexpr double standing_way_m = 2e-3, standing_turn_rad = 5e-3;
 constexpr std::int64_t pieces_between_doubts = std::int64_t{1} << 32;
-
-double squared(double value) { return value * value; }
 
 }  // namespace
 

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/squared.h"
 #include "tracking/pose_observations.h"
 
 namespace edgeslam {
 namespace {
-
-double squared(double value) { return value * value; }
 
 // Where the camera was, and how far it may have moved since.
 PositionPrior heldPosition(const HeldCamera& held, double sigma) {

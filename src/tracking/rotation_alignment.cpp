@@ -14,18 +14,18 @@ constexpr int coarsest_level = 5, finest_level = 3;
 constexpr int gradient_reach = 1;  // [px of the level]
 constexpr int most_samples = 640;  // of a level: three unknowns need no more
 
-struct Comparison {
+struct RotationComparison {
   int count = 0;
   double mean_square = 0;  // of the grey differences less their mean
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
 };
 
-Comparison compare(const Camera& camera, const RotationGrid& grid, const cv::Mat& from, const cv::Mat& to,
-                   const Eigen::Quaterniond& to_R_from) {
+RotationComparison compare(const Camera& camera, const RotationGrid& grid, const cv::Mat& from, const cv::Mat& to,
+                           const Eigen::Quaterniond& to_R_from) {
   const double scale = 1.0 / (1 << grid.level);
   const Eigen::Matrix3d rotation = to_R_from.toRotationMatrix();
-  Comparison sum;
+  RotationComparison sum;
   double difference_sum = 0, square_sum = 0;
   Eigen::Vector3d gradient_sum = Eigen::Vector3d::Zero();
   for (const RotationGrid::Sample& sample : grid.samples) {
@@ -115,13 +115,13 @@ Eigen::Quaterniond alignRotation(const Camera& camera, const std::vector<Rotatio
   for (const RotationGrid& grid : grids) {
     const auto level = static_cast<std::size_t>(grid.level);
     if (level >= from.levels.size() || level >= to.levels.size() || grid.samples.size() < 50) continue;
-    Comparison best = compare(camera, grid, from.levels[level], to.levels[level], to_R_from);
+    RotationComparison best = compare(camera, grid, from.levels[level], to.levels[level], to_R_from);
     for (int iteration = 0; iteration < 10; ++iteration) {
       if (2 * best.count < static_cast<int>(grid.samples.size())) break;
       const Eigen::Vector3d step =
           (best.normal_matrix + 1e-3 * best.count * Eigen::Matrix3d::Identity()).ldlt().solve(best.right);
       const Eigen::Quaterniond turned = (to_R_from * rotationExp(-step)).normalized();
-      const Comparison next = compare(camera, grid, from.levels[level], to.levels[level], turned);
+      const RotationComparison next = compare(camera, grid, from.levels[level], to.levels[level], turned);
       if (2 * next.count < static_cast<int>(grid.samples.size()) || next.mean_square >= best.mean_square) break;
       to_R_from = turned;
       best = next;

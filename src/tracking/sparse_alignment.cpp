@@ -45,18 +45,18 @@ void makePatches(const Camera& camera, const cv::Mat& image, int level, const Hi
   }
 }
 
-struct Comparison {
+struct PatchComparisons {
   int patches = 0;
   double cost = 0;  // robust, a patch
   Matrix6d normal_matrix = Matrix6d::Zero();
   Vector6d right = Vector6d::Zero();
 };
 
-Comparison compare(const Camera& camera, const Patches& patches, const cv::Mat& image, int level,
-                   const HiddenLevels& hidden, const Pose& to_T_from, double huber) {
+PatchComparisons compare(const Camera& camera, const Patches& patches, const cv::Mat& image, int level,
+                         const HiddenLevels& hidden, const Pose& to_T_from, double huber) {
   const double scale = 1.0 / (1 << level);
   const Eigen::Matrix3d rotation = to_T_from.rotation.toRotationMatrix();
-  Comparison sum;
+  PatchComparisons sum;
   for (const Patch& patch : patches) {
     const Eigen::Vector3d moved = rotation * patch.position + to_T_from.translation;
     if (moved.z() < 0.05 * patch.position.z()) continue;
@@ -92,9 +92,10 @@ Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePy
     const auto index = static_cast<std::size_t>(level);
     if (index >= from.levels.size() || index >= to.levels.size()) continue;
     makePatches(camera, from.levels[index], level, hidden, points, stride, patches);
-    Comparison best = compare(camera, patches, to.levels[index], level, hidden, to_T_from, options.huber);
+    PatchComparisons best = compare(camera, patches, to.levels[index], level, hidden, to_T_from, options.huber);
     if (!compared) {
-      const Comparison other = compare(camera, patches, to.levels[index], level, hidden, second_start, options.huber);
+      const PatchComparisons other =
+          compare(camera, patches, to.levels[index], level, hidden, second_start, options.huber);
       if (other.patches >= 10 && (best.patches < 10 || other.cost < best.cost)) {
         best = other;
         to_T_from = second_start;
@@ -110,7 +111,7 @@ Pose alignSparsely(const Camera& camera, const ImagePyramid& from, const ImagePy
       if (!step.allFinite()) break;
       // The template moved by `step` matches the image at the present pose, so the pose takes the inverse of it.
       const Pose next_pose = to_T_from * retract(Pose(), step).inverse();
-      const Comparison next = compare(camera, patches, to.levels[index], level, hidden, next_pose, options.huber);
+      const PatchComparisons next = compare(camera, patches, to.levels[index], level, hidden, next_pose, options.huber);
       if (next.patches < 10 || 3 * next.patches < 2 * best.patches || next.cost >= best.cost) break;
       const double gain = best.cost - next.cost;
       to_T_from = next_pose;

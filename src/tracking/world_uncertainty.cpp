@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "geometry/squared.h"
+
 namespace edgeslam {
 namespace {
 
@@ -13,8 +15,6 @@ struct HostInView {
   int points = 0;         // in view
   double variance = 0;    // the trace of what it leaves open of the camera's pose
 };
-
-double squared(double value) { return value * value; }
 
 Matrix6d carriedTo(const Pose& world_T_camera, const ViewKeyframe& keyframe) {
   return carriedUncertainty(keyframe.uncertainty, keyframe.world_T_camera.inverse() * world_T_camera)

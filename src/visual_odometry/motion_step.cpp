@@ -12,11 +12,9 @@ double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return 1e-9 * 
 
 bool isKnown(const FrameResult& result) { return result.covariance.allFinite() && result.world_covariance.allFinite(); }
 
-bool isFinite(const Pose& pose) {
-  return pose.translation.allFinite() && pose.rotation.coeffs().allFinite() && pose.rotation.norm() > 1e-3;
-}
+bool isUsable(const Pose& pose) { return isFinite(pose) && pose.rotation.norm() > 1e-3; }
 
-bool tellsMotion(const FrameResult& result) { return result.has_motion && isFinite(result.previous_T_camera); }
+bool tellsMotion(const FrameResult& result) { return result.has_motion && isUsable(result.previous_T_camera); }
 
 // Share of a motion, at constant velocity in the camera's frame (Sola et al., A micro Lie theory, 2018, equation 172).
 Pose shareOf(double share, const Pose& motion) {
@@ -31,7 +29,7 @@ Matrix6d growth(const Matrix6d& before, const Matrix6d& now) {
 }
 
 bool isMeasured(const FrameResult& result) {
-  return isGoodPose(result.state) && result.has_pose && isFinite(result.world_T_camera) && !result.position_is_held;
+  return isGoodPose(result.state) && result.has_pose && isUsable(result.world_T_camera) && !result.position_is_held;
 }
 
 Pose worldTCamera(const FrameResult& result) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/squared.h"
 #include "geometry/uncertainty.h"
 
 namespace edgeslam {
@@ -24,8 +25,6 @@ constexpr double rise_share = 0.05, planar_rise_share = 0.005;                  
 // As long as the wheels told nothing, the body may have changed its speed by so much.
 constexpr double unheard_acceleration = 1;       // [m/s^2]
 constexpr double unheard_turn_acceleration = 2;  // [rad/s^2]
-
-double squared(double value) { return value * value; }
 
 }  // namespace
 

@@ -10,7 +10,7 @@ fail() {
 }
 
 # Of all that goes into them: what is compiled from src/ and drivers/, but the examples.
-commands=$(grep '"command":' "$build/compile_commands.json" | grep -E ' -c [^ ]*/(src|drivers)/[^ ]*\.cpp' | grep -v /examples/)
+commands=$(grep '"command":' "$build/compile_commands.json" | grep -E ' -c [^ ]*/(src|drivers)/[^ ]*\.(cpp|cxx)' | grep -v /examples/)
 [ -n "$commands" ] || fail "no command that compiles src/ or drivers/"
 for flag in -fstack-protector-strong -fstack-clash-protection -D_FORTIFY_SOURCE=2; do
   bare=$(grep -v -e " $flag" <<< "$commands" | head -1 || true)

@@ -13,7 +13,7 @@ namespace edgeslam {
 namespace {
 
 // In bursts, and among messages that are no pose of a body.
-void publish(lcm::LCM& lcm, const OdometryPose& pose, std::size_t index) {
+void publishWheels(lcm::LCM& lcm, const OdometryPose& pose, std::size_t index) {
   pose_t message{};
   message.utime = pose.utime;
   std::copy_n(pose.local_T_body.translation.data(), 3, message.pos);
@@ -39,7 +39,7 @@ class DaemonWheels : public DaemonTest {
 
 TEST_F(DaemonWheels, GiveMetresAndPosesWhileTheLensIsCovered) {
   const auto daemon = startOn(way_, {"--config", configure(used_), "--record", folder_.path("recording")});
-  const BesideFrames<OdometryPose> wheels(*robot_, readWheelOdometry(way_ + "/wheel_odometry.txt"), publish);
+  const BesideFrames<OdometryPose> wheels(*robot_, readWheelOdometry(way_ + "/wheel_odometry.txt"), publishWheels);
   EXPECT_EQ(daemon->exitCode(), 0) << daemon->said();
   EXPECT_TRUE(robot_->hearsStatus([](const status_t& status) { return status.frames_captured >= frames; }));
   std::vector<state_t> metric;

@@ -11,7 +11,7 @@
 namespace edgeslam::test {
 namespace {
 
-InertialUnit unitOf(const TurningCamera& camera, double offset_s = 0) {
+InertialUnit mountedUnitOf(const TurningCamera& camera, double offset_s = 0) {
   InertialUnit unit;
   unit.rate_walk = camera.rate_walk;
   unit.offset_ns = std::llround(1e9 * offset_s);
@@ -19,7 +19,7 @@ InertialUnit unitOf(const TurningCamera& camera, double offset_s = 0) {
 }
 
 InertialCalibration calibrated(const TurningCamera& camera, unsigned seed = 1) {
-  return calibrateInertialUnit(camera.poses(seed), camera.samples(seed), unitOf(camera));
+  return calibrateInertialUnit(camera.poses(seed), camera.samples(seed), mountedUnitOf(camera));
 }
 
 void expectRefused(const InertialCalibration& calibration, const std::string& because) {
@@ -73,8 +73,8 @@ TEST(InertialCalibration, MirroredAxesAreRefused) {
   std::vector<InertialSample> swapped = camera.samples(1), negated = swapped;
   for (InertialSample& sample : swapped) std::swap(sample.rate.x(), sample.rate.y());
   for (InertialSample& sample : negated) sample.rate.z() *= -1;
-  expectRefused(calibrateInertialUnit(camera.poses(1), swapped, unitOf(camera)), "mirror image");
-  expectRefused(calibrateInertialUnit(camera.poses(1), negated, unitOf(camera)), "mirror image");
+  expectRefused(calibrateInertialUnit(camera.poses(1), swapped, mountedUnitOf(camera)), "mirror image");
+  expectRefused(calibrateInertialUnit(camera.poses(1), negated, mountedUnitOf(camera)), "mirror image");
 }
 
 TEST(InertialCalibration, WhereAMirrorWouldNotBeNoticedItSaysSo) {
@@ -99,8 +99,9 @@ TEST(InertialCalibration, SamplesOfAnotherTimeOrOfAnotherUnitAreRefused) {
     // Of a motion of its own: forwards in time where the camera's goes backwards.
     if (i < others.size() / 2) std::swap(others[i].rate, others[others.size() - 1 - i].rate);
   }
-  expectRefused(calibrateInertialUnit(camera.poses(1), others, unitOf(camera)), "contradicts the camera's turns");
-  expectRefused(calibrateInertialUnit(camera.poses(1), camera.samples(1), unitOf(camera, 1000)),
+  expectRefused(calibrateInertialUnit(camera.poses(1), others, mountedUnitOf(camera)),
+                "contradicts the camera's turns");
+  expectRefused(calibrateInertialUnit(camera.poses(1), camera.samples(1), mountedUnitOf(camera, 1000)),
                 "too little time in common");
 }
 
@@ -108,13 +109,13 @@ TEST(InertialCalibration, ClocksThatDifferByTooMuchAreRefused) {
   TurningCamera camera;
   camera.offset_s = 0.52;
   EXPECT_NE(calibrated(camera).problem, "");
-  EXPECT_EQ(calibrateInertialUnit(camera.poses(1), camera.samples(1), unitOf(camera, 0.3)).problem, "");
+  EXPECT_EQ(calibrateInertialUnit(camera.poses(1), camera.samples(1), mountedUnitOf(camera, 0.3)).problem, "");
 }
 
 TEST(InertialCalibration, ItsFileIsReadAsTheUnit) {
   const TurningCamera camera;
   const InertialCalibration found = calibrated(camera);
-  KnownUnit known{unitOf(camera), true};
+  KnownUnit known{mountedUnitOf(camera), true};
   known.unit.imu_T_camera.translation = {0.03, -0.01, 0.2};
   known.unit.rate_noise = 3e-4;
   known.unit.camera_readout_s = 0.02;
@@ -131,7 +132,7 @@ TEST(InertialCalibration, ItsFileIsReadAsTheUnit) {
 TEST(InertialCalibration, WhereNoPlaceWasGivenItsFileHasTheOneThatWasFound) {
   const TurningCamera camera;
   const InertialCalibration found = calibrated(camera);
-  const KnownUnit known{unitOf(camera), false};
+  const KnownUnit known{mountedUnitOf(camera), false};
   EXPECT_NE(inertialSummary(known, found).find("none was given"), std::string::npos);
   const TemporaryFolder folder;
   folder.write("imu.yaml", inertialUnitText(known, found, "recording"));

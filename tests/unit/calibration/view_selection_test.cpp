@@ -78,19 +78,19 @@ TEST_F(SelectedViews, TheTiltHasTheSidesThatTheGuidanceNames) {
 }
 
 TEST_F(SelectedViews, CoverageTellsWhatIsMissingUntilNothingIs) {
-  const Coverage none = coverageOf({}, {320, 240});
+  const ViewCoverage none = coverageOf({}, {320, 240});
   EXPECT_EQ(none.share(), 0);
   EXPECT_EQ(coverageProblems(none).size(), 1U);
   add(frame({0.3, 0.3, 0.4}), still_ns);
   selection_.end();
-  const Coverage one = coverageOf(selection_.views(), {320, 240});
+  const ViewCoverage one = coverageOf(selection_.views(), {320, 240});
   const std::vector<std::string> wishes = missingViews(one);
   ASSERT_GE(wishes.size(), 3U);
   EXPECT_NE(wishes[0].find("bottom right"), std::string::npos);
   EXPECT_NE(wishes[1].find("to the left, to the right, up, down"), std::string::npos);
   EXPECT_EQ(coverageMap(one).size(), static_cast<std::size_t>(coverage_rows));
 
-  Coverage all = one;
+  ViewCoverage all = one;
   all.views = 30;
   all.views_in_region.fill(5);
   all.tilted_left = all.tilted_right = all.tilted_up = all.tilted_down = 3;

@@ -14,8 +14,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-const auto ended = testing::ExitedWithCode(1);
-constexpr const char* told = "^edgeslam: the disk does not answer: ended all the same, [^\n]*\n$";
+const auto ended_by_deadline = testing::ExitedWithCode(1);
+constexpr const char* deadline_told = "^edgeslam: the disk does not answer: ended all the same, [^\n]*\n$";
 
 // For as long as a disk that never answers.
 void wait() { std::this_thread::sleep_for(std::chrono::seconds(60)); }
@@ -46,13 +46,13 @@ class EndDeadlineDeathTest : public testing::Test {
 };
 
 TEST_F(EndDeadlineDeathTest, ADiskThatNeverAnswersHoldsTheEndNoLonger) {
-  EXPECT_EXIT(waitAfter([](EndDeadline& deadline) { deadline.begin(); }), ended, told);
+  EXPECT_EXIT(waitAfter([](EndDeadline& deadline) { deadline.begin(); }), ended_by_deadline, deadline_told);
 }
 
 // The thread that would take the signal waits for the disk.
 TEST_F(EndDeadlineDeathTest, NorASignalThatNobodyTakes) {
-  EXPECT_EXIT(waitAfter([](EndDeadline&) { kill(getpid(), SIGTERM); }), ended, told);
-  EXPECT_EXIT(waitAfter([](EndDeadline&) { kill(getpid(), SIGINT); }), ended, told);
+  EXPECT_EXIT(waitAfter([](EndDeadline&) { kill(getpid(), SIGTERM); }), ended_by_deadline, deadline_told);
+  EXPECT_EXIT(waitAfter([](EndDeadline&) { kill(getpid(), SIGINT); }), ended_by_deadline, deadline_told);
 }
 
 TEST(EndDeadline, WithoutASignalNothingEnds) {
