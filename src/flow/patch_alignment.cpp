@@ -75,26 +75,35 @@ struct PatchComparison {
   float product = 0, with_x = 0, with_y = 0;  // of the window with the patch, and with its gradient
 };
 
+// Of a window's samples less their mean [grey^2].
+float windowSquare(std::int32_t samples, std::int32_t squares, double count) {
+  return static_cast<float>(squares - static_cast<double>(samples) * samples / count) * (grey_unit * grey_unit);
+}
+
+// Of a window's samples with the patch, whose mean is taken off exactly [grey^2].
+float windowProduct(const PatchTemplate& patch, std::int32_t samples, std::int32_t with_grey) {
+  return (static_cast<float>(with_grey) - patch.grey_left * static_cast<float>(samples)) * (grey_unit * grey_unit);
+}
+
 PatchComparison compare(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel) {
   const WindowPlace place = placeAround(image, pixel, patch.samples.side);
   const ComparisonSums sums = comparePatch(patch.samples, place.corner, place.step, place.weights);
   const double count = patch.samples.side * patch.samples.side;
   const auto sum = static_cast<float>(sums.samples);
   PatchComparison comparison;
-  comparison.square = static_cast<float>(sums.squares - static_cast<double>(sums.samples) * sums.samples / count) *
-                      (grey_unit * grey_unit);
-  comparison.product = (static_cast<float>(sums.with_grey) - patch.grey_left * sum) * (grey_unit * grey_unit);
+  comparison.square = windowSquare(sums.samples, sums.squares, count);
+  comparison.product = windowProduct(patch, sums.samples, sums.with_grey);
   comparison.with_x = (static_cast<float>(sums.with_x) - patch.x_left * sum) * (gradient_unit * grey_unit);
   comparison.with_y = (static_cast<float>(sums.with_y) - patch.y_left * sum) * (gradient_unit * grey_unit);
   return comparison;
 }
 
-float correlation(const PatchTemplate& patch, const PatchComparison& comparison) {
+float correlation(const PatchTemplate& patch, float square, float product) {
   const auto count = static_cast<float>(patch.samples.side * patch.samples.side);
   // Of two variances of a tenth grey value squared: on flat patches the correlation would be rounding errors over
   // nothing.
   const float least_square = 0.01f * count * count;
-  return comparison.product / std::sqrt(std::max(least_square, comparison.square * patch.normal_matrix(2, 2)));
+  return product / std::sqrt(std::max(least_square, square * patch.normal_matrix(2, 2)));
 }
 
 // Sums of three floats are written out: in what order Eigen adds them up depends on the processor.
@@ -156,7 +165,7 @@ AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, con
     // Normal equations of T(x + delta) (1 + gain) + bias = I(x + pixel); the template's terms have no mean, so the bias
     // drops out.
     const PatchComparison comparison = compare(patch, image, result.pixel);
-    result.correlation = correlation(patch, comparison);
+    result.correlation = correlation(patch, comparison.square, comparison.product);
     const Eigen::Vector2f pull = damping * (result.pixel - prediction);
     const Eigen::Vector3f right(comparison.with_x - patch.normal_matrix(0, 2) + pull.x(),
                                 comparison.with_y - patch.normal_matrix(1, 2) + pull.y(),
@@ -174,7 +183,10 @@ AlignmentResult alignPatch(const PatchTemplate& patch, const cv::Mat& image, con
 
 float correlationAt(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel) {
   if (!readable(image, pixel, static_cast<float>(patch.samples.side / 2))) return -1;
-  return correlation(patch, compare(patch, image, pixel));
+  const WindowPlace place = placeAround(image, pixel, patch.samples.side);
+  const CorrelationSums sums = correlatePatch(patch.samples, place.corner, place.step, place.weights);
+  return correlation(patch, windowSquare(sums.samples, sums.squares, patch.samples.side * patch.samples.side),
+                     windowProduct(patch, sums.samples, sums.with_grey));
 }
 
 PatchDifference differenceAt(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& pixel) {

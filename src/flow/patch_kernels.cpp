@@ -29,6 +29,11 @@ ComparisonSums compareVectors(const PatchSamples& patch, const std::uint8_t* cor
   return comparePatchReference(patch, corner, step, weights);
 }
 
+CorrelationSums correlateVectors(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
+                                 const BilinearWeights& weights) {
+  return correlatePatchReference(patch, corner, step, weights);
+}
+
 #else
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -173,13 +178,13 @@ PatchSums makePatchVectors(const SampledWindow& window, int side, PatchSamples& 
           grey_y.total(), xx.total(),  xy.total(),  yy.total()};
 }
 
-ComparisonSums compareVectors(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
-                              const BilinearWeights& weights) {
+// Gives each row of a window's samples, 0 beyond the patch, and its place in the patch to `add`.
+template <class Add>
+void forEachRow(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
+                const BilinearWeights& weights, const Add& add) {
   const Sixteen tag;
   const int lanes = static_cast<int>(hn::Lanes(tag));
   const Blend<Sixteen> blend(weights);
-  const auto ones = hn::Set(tag, 1);
-  ProductSum samples, squares, with_grey, with_x, with_y;
   for (int x = 0; x < patch_row; x += lanes) {
     const auto inside =
         hn::VecFromMask(tag, hn::FirstN(tag, static_cast<std::size_t>(patch.side > x ? patch.side - x : 0)));
@@ -188,18 +193,39 @@ ComparisonSums compareVectors(const PatchSamples& patch, const std::uint8_t* cor
     for (int y = 0; y < patch.side; ++y) {
       row += step;
       const auto below = blend.pixels(row), below_right = blend.pixels(row + 1);
-      const auto sample = hn::And(blend(here, right, below, below_right), inside);
-      const int at = y * patch_row + x;
-      samples.add(sample, ones);
-      squares.add(sample, sample);
-      with_grey.add(sample, hn::Load(tag, patch.grey.data() + at));
-      with_x.add(sample, hn::Load(tag, patch.gradient_x.data() + at));
-      with_y.add(sample, hn::Load(tag, patch.gradient_y.data() + at));
+      add(hn::And(blend(here, right, below, below_right), inside), y * patch_row + x);
       here = below;
       right = below_right;
     }
   }
+}
+
+ComparisonSums compareVectors(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
+                              const BilinearWeights& weights) {
+  const Sixteen tag;
+  const auto ones = hn::Set(tag, 1);
+  ProductSum samples, squares, with_grey, with_x, with_y;
+  forEachRow(patch, corner, step, weights, [&](hn::Vec<Sixteen> sample, int at) HWY_ATTR {
+    samples.add(sample, ones);
+    squares.add(sample, sample);
+    with_grey.add(sample, hn::Load(tag, patch.grey.data() + at));
+    with_x.add(sample, hn::Load(tag, patch.gradient_x.data() + at));
+    with_y.add(sample, hn::Load(tag, patch.gradient_y.data() + at));
+  });
   return {samples.total(), squares.total(), with_grey.total(), with_x.total(), with_y.total()};
+}
+
+CorrelationSums correlateVectors(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
+                                 const BilinearWeights& weights) {
+  const Sixteen tag;
+  const auto ones = hn::Set(tag, 1);
+  ProductSum samples, squares, with_grey;
+  forEachRow(patch, corner, step, weights, [&](hn::Vec<Sixteen> sample, int at) HWY_ATTR {
+    samples.add(sample, ones);
+    squares.add(sample, sample);
+    with_grey.add(sample, hn::Load(tag, patch.grey.data() + at));
+  });
+  return {samples.total(), squares.total(), with_grey.total()};
 }
 
 #endif
@@ -215,6 +241,7 @@ namespace edgeslam {
 HWY_EXPORT(sampleWindowVectors);
 HWY_EXPORT(makePatchVectors);
 HWY_EXPORT(compareVectors);
+HWY_EXPORT(correlateVectors);
 
 void sampleWindow(const std::uint8_t* corner, std::ptrdiff_t step, const BilinearWeights& weights, int side,
                   SampledWindow& window) {
@@ -230,6 +257,11 @@ PatchSums makePatchSamples(const SampledWindow& window, int side, PatchSamples& 
 ComparisonSums comparePatch(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
                             const BilinearWeights& weights) {
   return HWY_DYNAMIC_DISPATCH(compareVectors)(patch, corner, step, weights);
+}
+
+CorrelationSums correlatePatch(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
+                               const BilinearWeights& weights) {
+  return HWY_DYNAMIC_DISPATCH(correlateVectors)(patch, corner, step, weights);
 }
 
 }  // namespace edgeslam

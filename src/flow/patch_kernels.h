@@ -50,6 +50,15 @@ struct ComparisonSums {
   }
 };
 
+// The same without the gradient.
+struct CorrelationSums {
+  std::int32_t samples = 0, squares = 0, with_grey = 0;
+
+  bool operator==(const CorrelationSums& other) const {
+    return samples == other.samples && squares == other.squares && with_grey == other.with_grey;
+  }
+};
+
 // Fills a window from the pixels of 8 bits at `corner` (upper left, `step` bytes a row). Reads up to 9 pixels to the
 // right of the window.
 void sampleWindow(const std::uint8_t* corner, std::ptrdiff_t step, const BilinearWeights& weights, int side,
@@ -62,11 +71,17 @@ PatchSums makePatchSamples(const SampledWindow& window, int side, PatchSamples& 
 ComparisonSums comparePatch(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
                             const BilinearWeights& weights);
 
-// What sampleWindow, makePatchSamples and comparePatch give, one sample after the other.
+// Of comparePatch's sums those that a correlation needs.
+CorrelationSums correlatePatch(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
+                               const BilinearWeights& weights);
+
+// What sampleWindow, makePatchSamples, comparePatch and correlatePatch give, one sample after the other.
 void sampleWindowReference(const std::uint8_t* corner, std::ptrdiff_t step, const BilinearWeights& weights, int side,
                            SampledWindow& window);
 PatchSums makePatchSamplesReference(const SampledWindow& window, int side, PatchSamples& patch);
 ComparisonSums comparePatchReference(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
                                      const BilinearWeights& weights);
+CorrelationSums correlatePatchReference(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
+                                        const BilinearWeights& weights);
 
 }  // namespace edgeslam

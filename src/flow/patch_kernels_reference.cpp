@@ -105,4 +105,10 @@ ComparisonSums comparePatchReference(const PatchSamples& patch, const std::uint8
   return sums;
 }
 
+CorrelationSums correlatePatchReference(const PatchSamples& patch, const std::uint8_t* corner, std::ptrdiff_t step,
+                                        const BilinearWeights& weights) {
+  const ComparisonSums sums = comparePatchReference(patch, corner, step, weights);
+  return {sums.samples, sums.squares, sums.with_grey};
+}
+
 }  // namespace edgeslam

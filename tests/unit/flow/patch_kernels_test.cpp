@@ -79,6 +79,9 @@ TEST(PatchKernels, GiveTheReferencesBitsOnEveryInstructionSet) {
         ASSERT_TRUE(comparePatch(patch, other, step, one.weights) ==
                     comparePatchReference(patch, other, step, one.weights))
             << side;
+        ASSERT_TRUE(correlatePatch(patch, other, step, one.weights) ==
+                    correlatePatchReference(patch, other, step, one.weights))
+            << side;
       }
     }
   });
