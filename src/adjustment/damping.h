@@ -3,7 +3,7 @@
 
 namespace edgeslam {
 
-// Entries of the diagonal less than this are damped as if they were this.
+// Entries of the diagonal less than this are damped as if they were this. What is known less of a line has this.
 constexpr double least_information = 1e-6;
 
 }  // namespace edgeslam

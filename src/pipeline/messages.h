@@ -18,8 +18,6 @@
 
 namespace edgeslam {
 
-constexpr std::size_t longest_reason = 256;  // texts up to this take no memory anew [byte]
-
 // Tracking to mapping: a frame, or a frame whose pose was lost.
 struct MappingMessage {
   std::int64_t number = 0;  // counted from 0

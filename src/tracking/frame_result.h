@@ -1,6 +1,7 @@
 // What a frame came to, as it is given out at the time: its state, its pose and how well that is known.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +12,8 @@
 #include "wheels/wheel_scale.h"
 
 namespace edgeslam {
+
+constexpr std::size_t longest_reason = 256;  // texts up to this take no memory anew [byte]
 
 enum class TrackingState {
   initialising,  // no map yet; the reason says what is waited for

@@ -15,7 +15,6 @@ namespace {
 constexpr std::size_t scratch_size = std::size_t{8} << 20;  // a frame that needs more allocates it
 constexpr int least_pyramid_levels = 6;
 constexpr std::size_t most_found_again = 4096;
-constexpr std::size_t longest_reason = 256;
 constexpr int fewest_of_frozen_map = 40;  // points of it that must agree with a pose
 constexpr double few_left = 0.8;          // of the tracks there were when points of a frozen map were last looked for
 
