@@ -9,8 +9,6 @@
 namespace edgeslam {
 namespace {
 
-constexpr double threshold = 1.0 / 520;  // [rad], one pixel
-
 struct NoisyMatches {
   Pose second_T_first;
   std::vector<Eigen::Vector3d> first, second;
@@ -35,7 +33,7 @@ NoisyMatches noisyMatches(unsigned seed, int count, double farthest) {
 }
 
 // How far the two bearings together must turn to meet the epipolar constraint, squared [rad^2].
-double squaredError(const Pose& pose, const Eigen::Vector3d& first, const Eigen::Vector3d& second) {
+double squaredEpipolarError(const Pose& pose, const Eigen::Vector3d& first, const Eigen::Vector3d& second) {
   const Eigen::Vector3d turned = pose.rotation * first;
   const double constraint = pose.translation.dot(turned.cross(second));
   return constraint * constraint /
@@ -46,7 +44,8 @@ double squaredError(const Pose& pose, const Eigen::Vector3d& first, const Eigen:
 double tukeyCost(const Pose& pose, const NoisyMatches& matches) {
   double cost = 0;
   for (std::size_t i = 0; i < matches.first.size(); ++i) {
-    const double closeness = 1 - squaredError(pose, matches.first[i], matches.second[i]) / (4 * threshold * threshold);
+    const double closeness =
+        1 - squaredEpipolarError(pose, matches.first[i], matches.second[i]) / (4 * one_pixel_rad * one_pixel_rad);
     cost += closeness > 0 ? 1 - closeness * closeness * closeness : 1;
   }
   return cost;
@@ -66,7 +65,7 @@ TEST(EpipolarRefinement, EndsWhereNoPoseNearByExplainsTheMatchesBetter) {
   double gained = 0;
   for (unsigned seed = 0; seed < trials; ++seed) {
     const NoisyMatches matches = noisyMatches(seed, 200, 5);
-    const RelativePose found = relativePose(matches.first, matches.second, threshold, seed);
+    const RelativePose found = relativePose(matches.first, matches.second, one_pixel_rad, seed);
     ASSERT_TRUE(found.found) << seed;
     const double cost = tukeyCost(found.second_T_first, matches);
     double most = 0;
@@ -83,12 +82,12 @@ TEST(EpipolarRefinement, EndsWhereNoPoseNearByExplainsTheMatchesBetter) {
 TEST(EpipolarRefinement, InliersAreTheMatchesWithinTheThresholdInFrontOfBothCameras) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     const NoisyMatches matches = noisyMatches(seed, 200, 3);
-    const RelativePose found = relativePose(matches.first, matches.second, threshold, seed);
+    const RelativePose found = relativePose(matches.first, matches.second, one_pixel_rad, seed);
     ASSERT_TRUE(found.found);
     int count = 0, out_of_front = 0;
     for (std::size_t i = 0; i < matches.first.size(); ++i) {
-      const bool within =
-          squaredError(found.second_T_first, matches.first[i], matches.second[i]) < threshold * threshold;
+      const bool within = squaredEpipolarError(found.second_T_first, matches.first[i], matches.second[i]) <
+                          one_pixel_rad * one_pixel_rad;
       EXPECT_TRUE(within || !found.inliers[i]) << i;
       out_of_front += within && !found.inliers[i] ? 1 : 0;
       count += found.inliers[i] ? 1 : 0;
@@ -112,14 +111,14 @@ TEST(EpipolarRefinement, RaysThatMeetBehindTheCamerasDoNotCount) {
       matches.first.push_back(-behind.normalized());
       matches.second.push_back(-(matches.second_T_first * behind).normalized());
     }
-    const RelativePose found = relativePose(matches.first, matches.second, threshold, seed);
+    const RelativePose found = relativePose(matches.first, matches.second, one_pixel_rad, seed);
     ASSERT_TRUE(found.found);
     for (std::size_t i = 0; i < matches.first.size(); ++i) {
       const double apart = angleBetween(found.second_T_first.rotation * matches.first[i], matches.second[i]);
-      if (std::abs(apart - 2 * threshold) < 0.05 * threshold) continue;
-      const bool parallel = apart < 2 * threshold;
+      if (std::abs(apart - 2 * one_pixel_rad) < 0.05 * one_pixel_rad) continue;
+      const bool parallel = apart < 2 * one_pixel_rad;
       EXPECT_EQ(found.inliers[i] != 0, i < good || parallel) << seed << " " << i;
-      behind_and_refused += i >= good && !parallel && apart < 4 * threshold ? 1 : 0;
+      behind_and_refused += i >= good && !parallel && apart < 4 * one_pixel_rad ? 1 : 0;
       nearly_parallel += i >= good && parallel ? 1 : 0;
     }
   }

@@ -17,8 +17,6 @@ struct Matches {
   Pose second_T_first;
 };
 
-enum class Structure { volume, plane };
-
 // `count` matches between two views, with noise [px] in both and a share of matches whose second pixel is anywhere.
 Matches makeMatches(unsigned seed, int count, const Pose& second_T_first, Structure structure, double noise,
                     double outliers, const Camera& camera = pinholeCamera()) {
@@ -48,8 +46,6 @@ Matches makeMatches(unsigned seed, int count, const Pose& second_T_first, Struct
 
 Pose sidewaysMotion() { return {rotationExp({0.05, -0.1, 0.08}), {-0.5, 0.15, 0.1}}; }
 
-constexpr double threshold = 1.0 / 520;  // one pixel
-
 double rotationError(const RelativePose& found, const Matches& matches) {
   return rotationAngle(found.second_T_first.rotation, matches.second_T_first.rotation);
 }
@@ -60,7 +56,7 @@ double directionError(const RelativePose& found, const Matches& matches) {
 
 TEST(RelativePose, RecoversNoiselessPoseExactly) {
   const Matches matches = makeMatches(1, 60, sidewaysMotion(), Structure::volume, 0, 0);
-  const RelativePose found = relativePose(matches.first, matches.second, threshold, 7);
+  const RelativePose found = relativePose(matches.first, matches.second, one_pixel_rad, 7);
   ASSERT_TRUE(found.found);
   EXPECT_EQ(found.inlier_count, 60);
   EXPECT_LT(rotationError(found, matches), 1e-7);
@@ -74,7 +70,7 @@ TEST(RelativePose, RecoversPoseUnderNoiseAndOutliers) {
   const unsigned trials = 20;
   for (unsigned seed = 0; seed < trials; ++seed) {
     const Matches matches = makeMatches(seed, 400, sidewaysMotion(), Structure::volume, 0.3, 0.3);
-    const RelativePose found = relativePose(matches.first, matches.second, threshold, seed);
+    const RelativePose found = relativePose(matches.first, matches.second, one_pixel_rad, seed);
     ASSERT_TRUE(found.found);
     sum_squared += std::pow(rotationError(found, matches), 2);
     EXPECT_LT(rotationError(found, matches), 0.15 * degree) << "seed " << seed;
@@ -95,7 +91,7 @@ TEST(RelativePose, RecoversPoseUnderNoiseAndOutliers) {
 TEST(RelativePose, RecoversForwardMotionAndFisheye) {
   const Pose forward{rotationExp({0.02, 0.03, -0.05}), {0.02, -0.03, -0.6}};
   const Matches matches = makeMatches(3, 400, forward, Structure::volume, 0.3, 0.2);
-  const RelativePose found = relativePose(matches.first, matches.second, threshold, 1);
+  const RelativePose found = relativePose(matches.first, matches.second, one_pixel_rad, 1);
   ASSERT_TRUE(found.found);
   EXPECT_LT(rotationError(found, matches), 0.1 * degree);
   EXPECT_LT(directionError(found, matches), degree);
@@ -114,12 +110,12 @@ TEST(RelativePose, RecoversPlanarScene) {
   const Pose approaching{rotationExp({0.05, -0.1, 0.08}), {-0.3, 0.1, -0.6}};
   for (unsigned seed = 0; seed < 10; ++seed) {
     const Matches matches = makeMatches(seed, 300, sidewaysMotion(), Structure::plane, 0.1, 0.1);
-    const RelativePose found = relativePose(matches.first, matches.second, threshold, seed);
+    const RelativePose found = relativePose(matches.first, matches.second, one_pixel_rad, seed);
     ASSERT_TRUE(found.found);
     EXPECT_LT(rotationError(found, matches), 0.3 * degree) << "seed " << seed;
     EXPECT_LT(directionError(found, matches), 2 * degree) << "seed " << seed;
     const Matches ambiguous = makeMatches(seed, 300, approaching, Structure::plane, 0.1, 0.1);
-    EXPECT_GE(relativePose(ambiguous.first, ambiguous.second, threshold, seed).inlier_count, 268) << "of 270";
+    EXPECT_GE(relativePose(ambiguous.first, ambiguous.second, one_pixel_rad, seed).inlier_count, 268) << "of 270";
   }
 }
 
@@ -127,13 +123,13 @@ TEST(RelativePose, TellsRotationOnlyByItsShareAndParallax) {
   const Pose turn{rotationExp({0.1, -0.15, 0.2}), Eigen::Vector3d::Zero()};
   for (unsigned seed = 0; seed < 5; ++seed) {
     const Matches matches = makeMatches(seed, 300, turn, Structure::volume, 0.3, 0);
-    const RelativePose found = relativePose(matches.first, matches.second, threshold, seed);
+    const RelativePose found = relativePose(matches.first, matches.second, one_pixel_rad, seed);
     EXPECT_FALSE(found.found);
     EXPECT_GT(found.rotation_only_share, 0.98);
     EXPECT_LT(found.parallax, 0.1 * degree);
     EXPECT_LT(rotationError(found, matches), 0.05 * degree);
     const Matches with_outliers = makeMatches(seed, 300, turn, Structure::volume, 0.3, 0.3);
-    const RelativePose doubtful = relativePose(with_outliers.first, with_outliers.second, threshold, seed);
+    const RelativePose doubtful = relativePose(with_outliers.first, with_outliers.second, one_pixel_rad, seed);
     EXPECT_GT(doubtful.rotation_only_share, 0.68) << "of 0.7";
     EXPECT_LT(doubtful.parallax, 0.2 * degree);
   }
@@ -145,22 +141,22 @@ TEST(RelativePose, AnswersDegenerateInputWithoutThrowing) {
     const std::vector<Eigen::Vector3d> first(matches.first.begin(), matches.first.begin() + static_cast<long>(count));
     const std::vector<Eigen::Vector3d> second(matches.second.begin(),
                                               matches.second.begin() + static_cast<long>(count));
-    const RelativePose found = relativePose(first, second, threshold, 1);
+    const RelativePose found = relativePose(first, second, one_pixel_rad, 1);
     EXPECT_FALSE(found.found) << count;
     EXPECT_EQ(found.inliers.size(), count);
   }
   const std::vector<Eigen::Vector3d> same(20, Eigen::Vector3d::UnitZ());
-  EXPECT_FALSE(relativePose(same, same, threshold, 1).found);
-  EXPECT_NO_THROW(relativePose(same, matches.second, threshold, 1));
-  EXPECT_NO_THROW(relativePose(matches.first, same, threshold, 1));
+  EXPECT_FALSE(relativePose(same, same, one_pixel_rad, 1).found);
+  EXPECT_NO_THROW(relativePose(same, matches.second, one_pixel_rad, 1));
+  EXPECT_NO_THROW(relativePose(matches.first, same, one_pixel_rad, 1));
   const std::vector<Eigen::Vector3d> behind(20, -Eigen::Vector3d::UnitZ());
-  EXPECT_FALSE(relativePose(behind, matches.second, threshold, 1).found);
+  EXPECT_FALSE(relativePose(behind, matches.second, one_pixel_rad, 1).found);
 }
 
 TEST(RelativePose, IsAFunctionOfItsSeed) {
   const Matches matches = makeMatches(6, 200, sidewaysMotion(), Structure::volume, 0.5, 0.5);
-  const RelativePose a = relativePose(matches.first, matches.second, threshold, 3);
-  const RelativePose b = relativePose(matches.first, matches.second, threshold, 3);
+  const RelativePose a = relativePose(matches.first, matches.second, one_pixel_rad, 3);
+  const RelativePose b = relativePose(matches.first, matches.second, one_pixel_rad, 3);
   EXPECT_EQ(a.second_T_first.rotation.coeffs(), b.second_T_first.rotation.coeffs());
   EXPECT_EQ(a.second_T_first.translation, b.second_T_first.translation);
   EXPECT_EQ(a.inliers, b.inliers);

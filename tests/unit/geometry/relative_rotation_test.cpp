@@ -16,7 +16,7 @@ struct TurnedMatches {
 };
 
 // `noise` [rad] in the second bearing; a share of the matches is off by angles of up to `off` [rad] any way.
-TurnedMatches turned(unsigned seed, int count, double noise, double share_off, double off) {
+TurnedMatches turnedMatches(unsigned seed, int count, double noise, double share_off, double off) {
   Random random(seed);
   TurnedMatches matches;
   matches.turn = random.rotation(0.3);
@@ -41,7 +41,7 @@ std::vector<double> sortedErrors(const TurnedMatches& matches, const Eigen::Quat
 
 TEST(RelativeRotation, ItsErrorIsTheMedianOfWhatRemains) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    const TurnedMatches matches = turned(seed, 41 + static_cast<int>(seed), 0.01, 0.3, 0.4);
+    const TurnedMatches matches = turnedMatches(seed, 41 + static_cast<int>(seed), 0.01, 0.3, 0.4);
     const RelativeRotation found = relativeRotation(matches.first, matches.second);
     const std::vector<double> errors = sortedErrors(matches, found.rotation);
     EXPECT_NEAR(found.median_error, errors[errors.size() / 2], 1e-12) << "seed " << seed;
@@ -52,7 +52,7 @@ TEST(RelativeRotation, ItsErrorIsTheMedianOfWhatRemains) {
 // It is the least-squares rotation of those within two and a half medians: turning it further makes these worse.
 TEST(RelativeRotation, NoRotationNearByFitsTheMatchesThatItKeptBetter) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    const TurnedMatches matches = turned(seed, 200, 0.003, 0.3, 1.0);
+    const TurnedMatches matches = turnedMatches(seed, 200, 0.003, 0.3, 1.0);
     const RelativeRotation found = relativeRotation(matches.first, matches.second);
     const auto squares = [&](const Eigen::Quaterniond& rotation) {
       double sum = 0;
@@ -75,7 +75,7 @@ TEST(RelativeRotation, NoRotationNearByFitsTheMatchesThatItKeptBetter) {
 // Matches off to one side pull the mean, not what is left after trimming.
 TEST(RelativeRotation, MatchesThatAreOffToOneSideDoNotPullIt) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    TurnedMatches matches = turned(seed, 200, 0.001, 0, 0);
+    TurnedMatches matches = turnedMatches(seed, 200, 0.001, 0, 0);
     for (std::size_t i = 0; i < 50; ++i) matches.second[i] = rotationExp({0, 0.2, 0}) * matches.second[i];
     const RelativeRotation found = relativeRotation(matches.first, matches.second);
     EXPECT_LT(rotationAngle(found.rotation, matches.turn), 0.001) << "seed " << seed;

@@ -17,8 +17,6 @@ struct Sighting {
   Pose camera_T_world;
 };
 
-enum class Structure { volume, plane };
-
 Sighting makeSighting(unsigned seed, int count, Structure structure, double noise, double outliers,
                       const Camera& camera = pinholeCamera()) {
   Random random(seed);
@@ -38,7 +36,7 @@ Sighting makeSighting(unsigned seed, int count, Structure structure, double nois
   return sighting;
 }
 
-constexpr double threshold = 2.0 / 520;  // two pixels
+constexpr double two_pixels_rad = 2 * one_pixel_rad;
 
 void expectPose(const ResectioningResult& found, const Sighting& sighting, double rotation_degrees, double centre) {
   ASSERT_TRUE(found.found);
@@ -51,7 +49,7 @@ TEST(Resection, RecoversExactPose) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     for (const Structure structure : {Structure::volume, Structure::plane}) {
       const Sighting sighting = makeSighting(seed, 50, structure, 0, 0);
-      const ResectioningResult found = resection(sighting.points, sighting.bearings, threshold, seed);
+      const ResectioningResult found = resection(sighting.points, sighting.bearings, two_pixels_rad, seed);
       expectPose(found, sighting, 1e-4, 1e-5);
       EXPECT_EQ(found.inlier_count, 50);
     }
@@ -62,7 +60,7 @@ TEST(Resection, RecoversPoseUnderNoiseAndOutliers) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     for (const Structure structure : {Structure::volume, Structure::plane}) {
       const Sighting sighting = makeSighting(seed, 200, structure, 0.5, 0.4);
-      const ResectioningResult found = resection(sighting.points, sighting.bearings, threshold, seed);
+      const ResectioningResult found = resection(sighting.points, sighting.bearings, two_pixels_rad, seed);
       expectPose(found, sighting, 0.2, 0.02);
       for (std::size_t i = 0; i < sighting.good.size(); ++i) {
         if (!sighting.good[i] && found.inliers[i]) ADD_FAILURE() << "wrong match " << i << " taken";
@@ -85,25 +83,25 @@ TEST(Resection, AnswersDegenerateInputWithoutThrowing) {
   for (const long count : {0, 1, 3, 4, 5}) {
     const Vectors3 points(sighting.points.begin(), sighting.points.begin() + count);
     const Vectors3 bearings(sighting.bearings.begin(), sighting.bearings.begin() + count);
-    EXPECT_FALSE(resection(points, bearings, threshold, 1).found) << count;
+    EXPECT_FALSE(resection(points, bearings, two_pixels_rad, 1).found) << count;
   }
   const Vectors3 one_place(20, Eigen::Vector3d(1, 2, 3));
-  EXPECT_FALSE(resection(one_place, Vectors3(20, Eigen::Vector3d::UnitZ()), threshold, 1).found);
-  EXPECT_FALSE(resection(one_place, sighting.bearings, threshold, 1).found);
+  EXPECT_FALSE(resection(one_place, Vectors3(20, Eigen::Vector3d::UnitZ()), two_pixels_rad, 1).found);
+  EXPECT_FALSE(resection(one_place, sighting.bearings, two_pixels_rad, 1).found);
   Vectors3 line, line_bearings;
   for (int i = 0; i < 20; ++i) {
     line.emplace_back(0.1 * i - 1, 0.05 * i, 3 + 0.1 * i);
     line_bearings.push_back(line.back().normalized());
   }
-  EXPECT_FALSE(resection(line, line_bearings, threshold, 1).found) << "points on a line";
+  EXPECT_FALSE(resection(line, line_bearings, two_pixels_rad, 1).found) << "points on a line";
   const Sighting wrong = makeSighting(5, 60, Structure::volume, 0, 1);
-  EXPECT_LT(resection(wrong.points, wrong.bearings, threshold, 1).inlier_count, 10) << "all matches wrong";
+  EXPECT_LT(resection(wrong.points, wrong.bearings, two_pixels_rad, 1).inlier_count, 10) << "all matches wrong";
 }
 
 TEST(Resection, IsAFunctionOfItsSeed) {
   const Sighting sighting = makeSighting(6, 100, Structure::volume, 0.5, 0.5);
-  const ResectioningResult a = resection(sighting.points, sighting.bearings, threshold, 3);
-  const ResectioningResult b = resection(sighting.points, sighting.bearings, threshold, 3);
+  const ResectioningResult a = resection(sighting.points, sighting.bearings, two_pixels_rad, 3);
+  const ResectioningResult b = resection(sighting.points, sighting.bearings, two_pixels_rad, 3);
   EXPECT_EQ(a.camera_T_world.rotation.coeffs(), b.camera_T_world.rotation.coeffs());
   EXPECT_EQ(a.camera_T_world.translation, b.camera_T_world.translation);
   EXPECT_EQ(a.inliers, b.inliers);

@@ -7,10 +7,9 @@
 
 #include "geometry/camera.h"
 #include "geometry/pose.h"
+#include "unit/geometry/degree.h"
 
 namespace edgeslam {
-
-constexpr double degree = M_PI / 180;
 
 class Random {
  public:
@@ -29,6 +28,8 @@ inline Camera pinholeCamera() {
   return {CameraModel::pinhole_radial_tangential, 640, 480, 520.9, 521, 325.1, 249.7,
           {0.08, -0.16, -0.0015, -0.0004, 0}};
 }
+
+constexpr double one_pixel_rad = 1.0 / 520;  // of that camera, nearly
 
 inline Camera fisheyeCamera() {
   return {CameraModel::kannala_brandt, 512, 512, 190.98, 190.97, 254.93, 256.90, {0.0034, 0.0007, -0.0020, 0.0002, 0}};
@@ -54,6 +55,9 @@ inline std::vector<NamedCamera> cameras() {
 inline Eigen::Vector2d randomPixel(const Camera& camera, Random& random) {
   return {random.uniform(0, camera.width - 1), random.uniform(0, camera.height - 1)};
 }
+
+// How points lie in space.
+enum class Structure { volume, plane };
 
 // Angle [rad] between two directions.
 inline double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

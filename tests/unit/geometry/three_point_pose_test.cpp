@@ -15,13 +15,13 @@ Eigen::Vector3d randomVector(std::mt19937& random, double reach) {
   return {uniform(random), uniform(random), uniform(random)};
 }
 
-struct Sighting {
+struct ThreeSightings {
   Pose camera_T_world;
   Triple points, bearings;
 };
 
-Sighting randomSighting(std::mt19937& random) {
-  Sighting sighting;
+ThreeSightings randomSightings(std::mt19937& random) {
+  ThreeSightings sighting;
   sighting.camera_T_world = {rotationExp(randomVector(random, 1.5)), randomVector(random, 2)};
   for (std::size_t i = 0; i < 3; ++i) {
     const Eigen::Vector3d in_camera = randomVector(random, 1) + Eigen::Vector3d(0, 0, 3);
@@ -31,7 +31,7 @@ Sighting randomSighting(std::mt19937& random) {
   return sighting;
 }
 
-double largestError(const Pose& pose, const Sighting& sighting) {
+double largestError(const Pose& pose, const ThreeSightings& sighting) {
   double largest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     largest = std::max(largest, ((pose * sighting.points[i]).normalized() - sighting.bearings[i]).norm());
@@ -43,7 +43,7 @@ TEST(ThreePointPose, TheTruePoseIsAmongThem) {
   std::mt19937 random(1);
   int missed = 0;
   for (int trial = 0; trial < 2000; ++trial) {
-    const Sighting sighting = randomSighting(random);
+    const ThreeSightings sighting = randomSightings(random);
     const ThreePointPoses poses = posesFromThreePoints(sighting.points, sighting.bearings);
     double nearest = 1e9;
     for (int i = 0; i < poses.count; ++i) {
@@ -60,7 +60,7 @@ TEST(ThreePointPose, EveryPoseSeesThePointsWhereTheyAre) {
   std::mt19937 random(2);
   int poses_seen = 0, wrong = 0;
   for (int trial = 0; trial < 2000; ++trial) {
-    const Sighting sighting = randomSighting(random);
+    const ThreeSightings sighting = randomSightings(random);
     const ThreePointPoses poses = posesFromThreePoints(sighting.points, sighting.bearings);
     for (int i = 0; i < poses.count; ++i) {
       ++poses_seen;

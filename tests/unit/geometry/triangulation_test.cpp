@@ -48,7 +48,7 @@ Eigen::Vector2d epipolarDirection(const Sight& sight, const Pose& view_T_host) {
   return (jacobian * view_T_host.translation).normalized();
 }
 
-Eigen::Vector2d turned(const Eigen::Vector2d& v, double angle) { return Eigen::Rotation2Dd(angle) * v; }
+Eigen::Vector2d rotated(const Eigen::Vector2d& v, double angle) { return Eigen::Rotation2Dd(angle) * v; }
 
 TEST(Triangulate, RecoversExactDepth) {
   Random random(1);
@@ -87,8 +87,8 @@ TEST(Triangulate, RecoversDepthOfAnEdgeWhosePixelSlidesAlongIt) {
     Sight sight = makeSight(random, camera, random.uniform(1, 10), 2);
     for (TriangulationView& view : sight.views) {
       const Eigen::Vector2d along = epipolarDirection(sight, view.view_T_host);
-      const Eigen::Vector2d normal = turned(along, random.uniform(-60, 60) * degree);
-      view.measurement = {view.measurement.pixel + random.uniform(-20, 20) * turned(normal, M_PI / 2), normal, 0.5,
+      const Eigen::Vector2d normal = rotated(along, random.uniform(-60, 60) * degree);
+      view.measurement = {view.measurement.pixel + random.uniform(-20, 20) * rotated(normal, M_PI / 2), normal, 0.5,
                           1e6};
     }
     const TriangulationResult found = triangulate(camera, sight.host_bearing, sight.views);
@@ -105,7 +105,7 @@ TEST(Triangulate, SigmaTellsAnEdgeAlongTheEpipolarLine) {
     Measurement& measurement = sight.views[0].measurement;
     const Eigen::Vector2d along = epipolarDirection(sight, sight.views[0].view_T_host);
     const auto sigmaAt = [&](double angle) {
-      measurement.normal = turned(along, angle);
+      measurement.normal = rotated(along, angle);
       measurement.sigma_tangent = 1000;
       return triangulate(sight.camera, sight.host_bearing, sight.views, sight.inverse_depth).sigma;
     };
@@ -125,9 +125,9 @@ TEST(Triangulate, SigmaIsHonest) {
     Sight sight = makeSight(random, pinholeCamera(), random.uniform(1, 4), 3);
     for (TriangulationView& view : sight.views) {
       const double sigma_normal = random.uniform(0.1, 0.6), sigma_tangent = random.uniform(1, 3) * sigma_normal;
-      const Eigen::Vector2d normal = turned(Eigen::Vector2d::UnitX(), random.uniform(0, 2 * M_PI));
+      const Eigen::Vector2d normal = rotated(Eigen::Vector2d::UnitX(), random.uniform(0, 2 * M_PI));
       const Eigen::Vector2d noise =
-          random.normal(sigma_normal) * normal + random.normal(sigma_tangent) * turned(normal, M_PI / 2);
+          random.normal(sigma_normal) * normal + random.normal(sigma_tangent) * rotated(normal, M_PI / 2);
       view.measurement = {view.measurement.pixel + noise, normal, sigma_normal, sigma_tangent};
     }
     const TriangulationResult found = triangulate(sight.camera, sight.host_bearing, sight.views);
