@@ -12,8 +12,6 @@
 namespace edgeslam::test {
 namespace {
 
-constexpr double huber = 2;
-
 Eigen::Matrix3d someWhitening(Random& random, double information) {
   Eigen::Matrix3d whitening = Eigen::Matrix3d::Zero();
   for (int row = 0; row < 3; ++row) {
@@ -67,7 +65,7 @@ TEST(BundleInertia, CostsNothingAtTheTruth) {
   const BundleScene scene = sceneWithInertia(random, 6, 1);
   EXPECT_EQ(scene.truth.turns.size(), 5U);
   EXPECT_EQ(scene.truth.speed_changes.size(), 4U);
-  EXPECT_LT(inertialCost(scene.truth, huber), 1e-16);
+  EXPECT_LT(inertialCost(scene.truth, test_huber), 1e-16);
 }
 
 // With all blocks of the reduced system, and with those that are asked for.
@@ -86,7 +84,7 @@ TEST_P(BundleInertiaOf, DerivativesAreTheNumericOnes) {
   }
   state.inertia = problem.inertia;
   ASSERT_GT(inertialCost(problem, structure, state, 1e3), 1);
-  EXPECT_NEAR(inertialCost(problem, structure, state, huber), inertialCost(problem, huber), 1e-9);
+  EXPECT_NEAR(inertialCost(problem, structure, state, test_huber), inertialCost(problem, test_huber), 1e-9);
 
   const auto unknowns = static_cast<Eigen::Index>(structure.camera_of_unknown.size());
   ASSERT_EQ(unknowns, 5);
@@ -110,7 +108,7 @@ TEST_P(BundleInertiaOf, DerivativesAreTheNumericOnes) {
     }
     return inertialCost(problem, structure, moved, with_huber);
   };
-  for (const double with_huber : {huber, 1e3}) {
+  for (const double with_huber : {test_huber, 1e3}) {
     const BundleLinearization made = linearized(with_huber);
     for (Eigen::Index k = 0; k < 6 * unknowns; ++k) {
       constexpr double step = 1e-6;

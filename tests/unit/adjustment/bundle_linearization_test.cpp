@@ -13,8 +13,6 @@
 namespace edgeslam::test {
 namespace {
 
-constexpr double huber = 2;
-
 struct Linearized {
   BundleScene scene;
   BundleStructure structure;
@@ -75,7 +73,7 @@ Linearized linearized(const BundleSceneOptions& options, double damping, std::ui
   for (const StructuredLine& line : made.structure.lines)
     made.state.lines.push_back(problem.lines[static_cast<std::size_t>(line.index)].line);
   made.linearization.origin = {0.3, -0.2, 0.5};
-  linearizeBundle(scene.camera, problem, made.structure, made.state, huber, damping, made.linearization);
+  linearizeBundle(scene.camera, problem, made.structure, made.state, test_huber, damping, made.linearization);
   return made;
 }
 
@@ -129,7 +127,7 @@ Eigen::VectorXd residualsAt(const Linearized& from, const BundleState& state) {
       const StructuredObservation& o = from.structure.observations[static_cast<std::size_t>(k)];
       Eigen::Vector2d before = Eigen::Vector2d::Zero(), now = before;
       EXPECT_TRUE(add(from.state, i, o, before) && add(state, i, o, now));
-      now *= std::sqrt(huberWeight(before.norm(), huber));
+      now *= std::sqrt(huberWeight(before.norm(), test_huber));
       residuals.insert(residuals.end(), {now.x(), now.y()});
     }
   }
@@ -141,7 +139,7 @@ Eigen::VectorXd residualsAt(const Linearized& from, const BundleState& state) {
     const StructuredLine& line = from.structure.lines[i];
     for (int k = line.first_observation; k < line.end_observation; ++k) {
       const StructuredLineObservation& o = from.structure.line_observations[static_cast<std::size_t>(k)];
-      const double weight = huberWeight(std::abs(lineResidualAt(from, from.state, i, o)), huber);
+      const double weight = huberWeight(std::abs(lineResidualAt(from, from.state, i, o)), test_huber);
       residuals.push_back(std::sqrt(weight) * lineResidualAt(from, state, i, o));
     }
   }
@@ -230,7 +228,7 @@ TEST_P(BundleLinearizationOfModel, CostIsTheSameWithAndWithoutDerivatives) {
   options.model = GetParam();
   options.noise = 1;
   const Linearized made = linearized(options, 0, 4, 30, false, 10);
-  EXPECT_NEAR(bundleCost(made.scene.camera, made.scene.truth, made.structure, made.state, huber),
+  EXPECT_NEAR(bundleCost(made.scene.camera, made.scene.truth, made.structure, made.state, test_huber),
               made.linearization.cost, 1e-10 * made.linearization.cost);
 }
 

@@ -13,7 +13,7 @@ namespace edgeslam::test {
 namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double infinite_value = std::numeric_limits<double>::infinity();
 
 void expectTruth(const BundleProblem& problem, const BundleProblem& truth) {
   EXPECT_LT(largestTranslationError(problem, truth), 1e-5);
@@ -337,7 +337,7 @@ TEST(OddLines, ThroughACameraTheyAreKnownByTheOthers) {
     const BundleResult at_truth = adjustBundle(odd.house.camera, exact, {0, 2});
     for (std::size_t k = odd.first_observation; k < at_truth.line_errors.size(); ++k) {
       const bool end_on = exact.line_observations[k].camera == 4;
-      EXPECT_EQ(at_truth.line_errors[k] == kInfinity, end_on) << k;
+      EXPECT_EQ(at_truth.line_errors[k] == infinite_value, end_on) << k;
       EXPECT_EQ(at_truth.line_errors[k] < 0.01, !end_on) << k;
     }
     BundleProblem problem;
@@ -358,7 +358,7 @@ TEST(OddLines, SeenEndOnAloneNothingIsKnownOfThem) {
   ASSERT_TRUE(result.usable);
   EXPECT_LT(changeBetween(problem.lines[odd.line].line, line).norm(), 1e-12);
   EXPECT_TRUE(result.line_covariances[odd.line].isApprox(1e6 * Eigen::Matrix4d::Identity()));
-  EXPECT_EQ(result.line_errors.back(), kInfinity);
+  EXPECT_EQ(result.line_errors.back(), infinite_value);
 }
 
 TEST(UnusableLines, ValuesThatAreNoNumbersTakeNoPart) {
@@ -370,9 +370,9 @@ TEST(UnusableLines, ValuesThatAreNoNumbersTakeNoPart) {
   problem.line_observations[2].sigma = nan_value;
   problem.line_observations[3].sigma = 0;
   problem.line_observations[4].sigma = -house_sigma;
-  problem.line_observations[5].row = kInfinity;
+  problem.line_observations[5].row = infinite_value;
   problem.lines[5].line.direction.y() = nan_value;
-  problem.lines[6].line.point.z() = kInfinity;
+  problem.lines[6].line.point.z() = infinite_value;
   problem.lines[7].line.direction.setZero();
   const BundleResult result = adjustBundle(house.camera, problem, manyIterations());
   ASSERT_TRUE(result.usable);
@@ -380,7 +380,7 @@ TEST(UnusableLines, ValuesThatAreNoNumbersTakeNoPart) {
   for (std::size_t k = 0; k < problem.line_observations.size(); ++k) {
     const int line = problem.line_observations[k].line;
     if (k < 6 || (line >= 5 && line <= 7)) {
-      EXPECT_EQ(result.line_errors[k], kInfinity) << k;
+      EXPECT_EQ(result.line_errors[k], infinite_value) << k;
     } else {
       EXPECT_LT(result.line_errors[k], 0.01) << k;
     }
@@ -405,7 +405,7 @@ TEST(UnusableLines, IndicesOutOfRangeLeaveTheProblem) {
       const BundleResult result = adjustBundle(house.camera, problem, {});
       EXPECT_FALSE(result.usable);
       EXPECT_TRUE(sameBytes(problem, good) && sameLines(problem, good));
-      EXPECT_EQ(result.line_errors, std::vector<double>(problem.line_observations.size(), kInfinity));
+      EXPECT_EQ(result.line_errors, std::vector<double>(problem.line_observations.size(), infinite_value));
       EXPECT_EQ(result.line_covariances.size(), problem.lines.size());
     }
   }

@@ -54,10 +54,6 @@ Vector6d poseError(const Pose& estimate, const Pose& truth) {
 
 double distance(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }
 
-bool sameBytes(const Pose& a, const Pose& b) {
-  return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
-}
-
 class PoseAdjustmentOfModel : public testing::TestWithParam<CameraModel> {};
 
 TEST_P(PoseAdjustmentOfModel, RecoversExactPoseFromPerturbedStart) {

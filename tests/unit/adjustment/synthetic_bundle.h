@@ -8,6 +8,8 @@
 
 namespace edgeslam::test {
 
+constexpr double test_huber = 2;  // bound of whitened residuals beyond which they count less
+
 struct BundleScene {
   Camera camera;
   BundleProblem truth;  // observations without noise
@@ -99,10 +101,6 @@ inline double largestDepthError(const BundleProblem& a, const BundleProblem& b) 
     largest = std::max(largest, std::abs(a.points[i].inverse_depth - b.points[i].inverse_depth));
   }
   return largest;
-}
-
-inline bool sameBytes(const Pose& a, const Pose& b) {
-  return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
 }
 
 inline bool sameBytes(const BundleProblem& a, const BundleProblem& b) {

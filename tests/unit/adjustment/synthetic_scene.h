@@ -49,6 +49,8 @@ inline Camera testCamera(CameraModel model) {
   return camera;
 }
 
+inline const Camera distorted_camera = testCamera(CameraModel::pinhole_radial_tangential);
+
 inline Pose randomPose(Random& random, double translation, double rotation) {
   Pose pose;
   pose.translation = uniformVector(random, translation);
@@ -61,6 +63,10 @@ inline Pose perturbed(Random& random, const Pose& pose, double translation, doub
   Vector6d update;
   update << translation * direction(random), rotation * direction(random);
   return retract(pose, update);
+}
+
+inline bool sameBytes(const Pose& a, const Pose& b) {
+  return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
 }
 
 inline Eigen::Vector2d randomPixel(Random& random, const Camera& camera) {
