@@ -9,8 +9,6 @@
 namespace edgeslam {
 namespace {
 
-const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
-
 std::vector<Pose> beforeTheWall() {
   std::vector<Pose> poses;
   for (int i = 0; i < 6; ++i) poses.push_back({rotationExp({0.01 * i, -0.02 * i, 0}), {0.15 * i, 0.05 * (i % 3), 0}});
@@ -27,7 +25,7 @@ struct NoisyMap {
     test::Random random(seed);
     test::Sight sight;
     sight.noise = 1;
-    map = test::keyframesOf(camera, scene, truth, sight, random);
+    map = test::keyframesOf(test::distorted_camera, scene, truth, sight, random);
     test::addAllPoints(scene, map);
     for (auto& [id, point] : map.points) {
       const Eigen::Vector3d in_host = truth[static_cast<std::size_t>(point.host)].inverse() * positionOf(id);
@@ -49,7 +47,7 @@ TEST(AdjustedDepths, AreOffByWhatTheirDeviationsSay) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       NoisyMap noisy(seed);
       for (auto& [id, point] : noisy.map.points) point.inverse_depth_sigma = sigma_before * point.inverse_depth;
-      ASSERT_TRUE(adjustKeyframes(camera, {}, {5}, {0, 1, 2, 3, 4}, noisy.map));
+      ASSERT_TRUE(adjustKeyframes(test::distorted_camera, {}, {5}, {0, 1, 2, 3, 4}, noisy.map));
       for (const auto& [id, point] : noisy.map.points) {
         EXPECT_GT(point.inverse_depth_sigma, 0) << id;
         if (point.inverse_depth_sigma > 0.1 * point.inverse_depth) continue;  // not in proportion any more
@@ -67,8 +65,8 @@ TEST(AdjustedDepths, AreOffByWhatTheirDeviationsSay) {
 TEST(AdjustedDepths, DeviateLessTheMoreKeyframesSeeThePoint) {
   NoisyMap few(3), many(3);
   for (auto& [id, point] : few.map.points) point.seen_in = {point.seen_in.back()};
-  ASSERT_TRUE(adjustKeyframes(camera, {}, {5}, {0, 1, 2, 3, 4}, few.map));
-  ASSERT_TRUE(adjustKeyframes(camera, {}, {5}, {0, 1, 2, 3, 4}, many.map));
+  ASSERT_TRUE(adjustKeyframes(test::distorted_camera, {}, {5}, {0, 1, 2, 3, 4}, few.map));
+  ASSERT_TRUE(adjustKeyframes(test::distorted_camera, {}, {5}, {0, 1, 2, 3, 4}, many.map));
   int compared = 0;
   for (const auto& [id, point] : few.map.points) {
     const auto with_more = many.map.points.find(id);
@@ -103,7 +101,7 @@ TEST(AdjustedDepths, StayWhereNothingWasMeasured) {
   }
   ASSERT_GT(unseen.size(), 20U);
   const Map before = noisy.map;
-  ASSERT_TRUE(adjustKeyframes(camera, {}, {5}, {4}, noisy.map));
+  ASSERT_TRUE(adjustKeyframes(test::distorted_camera, {}, {5}, {4}, noisy.map));
   for (const PointId id : unseen) {
     ASSERT_EQ(noisy.map.points.count(id), 1U) << id;
     EXPECT_EQ(noisy.map.points.at(id).inverse_depth, before.points.at(id).inverse_depth) << id;

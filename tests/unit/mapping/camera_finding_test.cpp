@@ -9,7 +9,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double motion = 0.5, noise = 0.2;
+constexpr double largest_motion = 0.5, noise_px = 0.2;
 constexpr double longest_s = 0.05;
 
 // Looks at the map as often as it takes.
@@ -24,7 +24,8 @@ TEST(CameraFinding, TheReadoutIsThatWithWhichTheMapFits) {
   for (const double readout_s : {-0.025, 0.0, 0.012, 0.03}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const auto estimate = estimateReadout(
-          test::lookedAt(test::Walk::camera(), test::rollingWalk(seed, 20, readout_s, motion, noise)), longest_s);
+          test::lookedAt(test::Walk::camera(), test::rollingWalk(seed, 20, readout_s, largest_motion, noise_px)),
+          longest_s);
       ASSERT_TRUE(estimate);
       EXPECT_NEAR(estimate->value, readout_s, 0.0015) << seed;
       EXPECT_GT(estimate->sigma, 0);
@@ -34,7 +35,7 @@ TEST(CameraFinding, TheReadoutIsThatWithWhichTheMapFits) {
 }
 
 TEST(CameraFinding, ARollingShutterIsFoundAndTheMapAdjustedToIt) {
-  test::Walk walk = test::rollingWalk(4, 20, 0.02, motion, noise);
+  test::Walk walk = test::rollingWalk(4, 20, 0.02, largest_motion, noise_px);
   CameraFinding finding({});
   const FoundCamera found = foundIn(walk, finding);
   ASSERT_TRUE(found.readout_s);
@@ -42,7 +43,7 @@ TEST(CameraFinding, ARollingShutterIsFoundAndTheMapAdjustedToIt) {
   EXPECT_EQ(found.focal_scale, 1);
   EXPECT_TRUE(finding.isSettled());
   double cost_found = 0, cost_global = 0;
-  test::Walk as_global = test::rollingWalk(4, 20, 0.02, motion, noise);
+  test::Walk as_global = test::rollingWalk(4, 20, 0.02, largest_motion, noise_px);
   const std::vector<KeyframeId> all = test::allKeyframes(walk.map);
   ASSERT_TRUE(adjustKeyframes(withFound(test::Walk::camera(), found), {}, all, {}, walk.map, nullptr, &cost_found));
   ASSERT_TRUE(adjustKeyframes(test::Walk::camera(), {}, all, {}, as_global.map, nullptr, &cost_global));
@@ -51,7 +52,7 @@ TEST(CameraFinding, ARollingShutterIsFoundAndTheMapAdjustedToIt) {
 
 TEST(CameraFinding, AGlobalShutterStaysOne) {
   for (std::uint64_t seed = 5; seed <= 7; ++seed) {
-    test::Walk walk = test::rollingWalk(seed, 20, 0, motion, noise);
+    test::Walk walk = test::rollingWalk(seed, 20, 0, largest_motion, noise_px);
     const Map before = walk.map;
     CameraFinding finding({});
     EXPECT_FALSE(foundIn(walk, finding).readout_s) << seed;
@@ -100,8 +101,8 @@ TEST(CameraFinding, APresumedFocalLengthMayBeFarOff) {
 
 // Looks that find nothing for long do not end the search.
 TEST(CameraFinding, WhatOneMotionDoesNotTellIsFoundOnceAnotherTellsIt) {
-  test::Walk silent = test::rollingWalk(5, 20, 0, motion, noise),
-             telling = test::rollingWalk(4, 20, 0.02, motion, noise);
+  test::Walk silent = test::rollingWalk(5, 20, 0, largest_motion, noise_px),
+             telling = test::rollingWalk(4, 20, 0.02, largest_motion, noise_px);
   CameraFinding finding({});
   for (int keyframe = 0; keyframe < 60; ++keyframe) finding.look(test::Walk::camera(), {}, {}, silent.map);
   ASSERT_EQ(silent.map.found, FoundCamera{});
@@ -112,7 +113,7 @@ TEST(CameraFinding, WhatOneMotionDoesNotTellIsFoundOnceAnotherTellsIt) {
 
 // It sees the same whatever the readout.
 TEST(CameraFinding, ACameraThatStandsWhileItReadsTellsNothing) {
-  test::Walk walk = test::rollingWalk(8, 20, 0.02, 0, noise);
+  test::Walk walk = test::rollingWalk(8, 20, 0.02, 0, noise_px);
   const auto estimate = estimateReadout(test::lookedAt(test::Walk::camera(), walk), longest_s);
   EXPECT_TRUE(!estimate || estimate->sigma > longest_s);
   CameraFinding finding({});
@@ -120,7 +121,7 @@ TEST(CameraFinding, ACameraThatStandsWhileItReadsTellsNothing) {
 }
 
 TEST(CameraFinding, AReadoutThatIsKnownAndOneThatIsNotAskedForAreLeftAlone) {
-  test::Walk walk = test::rollingWalk(9, 20, 0.02, motion, noise);
+  test::Walk walk = test::rollingWalk(9, 20, 0.02, largest_motion, noise_px);
   Camera known = test::Walk::camera();
   known.readout_s = 0.01;
   CameraFindingOptions off;

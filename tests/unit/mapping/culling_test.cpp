@@ -13,8 +13,6 @@
 namespace edgeslam::test {
 namespace {
 
-const Camera camera = Walk::camera();
-
 Walk walkOf(int steps, std::uint64_t seed = 1) {
   Walk walk(seed);
   while (static_cast<int>(walk.poses.size()) < steps) walk.step();
@@ -70,9 +68,9 @@ INSTANTIATE_TEST_SUITE_P(Bounds, CullingWithin,
 TEST_P(CullingWithin, TheMapIsWholeAndItsEndsStay) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Walk walk = walkOf(100, seed);
-    ASSERT_EQ(mapProblem(camera, walk.map), "");
+    ASSERT_EQ(mapProblem(Walk::camera(), walk.map), "");
     const auto culled = cullKeyframes(options, walk.map, walk.candidates);
-    EXPECT_EQ(mapProblem(camera, walk.map), "");
+    EXPECT_EQ(mapProblem(Walk::camera(), walk.map), "");
     EXPECT_GT(culled.size(), 3U);
     EXPECT_EQ(walk.map.keyframes.size() + culled.size(), 100U);
     EXPECT_LE(static_cast<int>(walk.map.keyframes.size()), options.most_keyframes);
@@ -181,7 +179,7 @@ TEST_P(CullingWithin, ALongWalkStaysWithinBoundsAndFlat) {
     most = std::max(most, walk.map.keyframes.size());
     bytes = std::max(bytes, memoryOf(walk.map));
     if (i % 50 == 49) {
-      ASSERT_EQ(mapProblem(camera, walk.map), "") << i;
+      ASSERT_EQ(mapProblem(Walk::camera(), walk.map), "") << i;
     }
   }
   EXPECT_LE(most_late, most_early + most_early / 10);
@@ -202,7 +200,7 @@ TEST(Culling, AKeyframeGoesWhoseSightsOthersHaveAndStaysWhereItIsOneOfFew) {
     seenOnlyBy(7, 8, point, walk);
   }
   ASSERT_GT(rare.size(), 5U);
-  ASSERT_EQ(mapProblem(camera, walk.map), "");
+  ASSERT_EQ(mapProblem(Walk::camera(), walk.map), "");
   const std::size_t points = walk.map.points.size();
   const auto culled = cullKeyframes(options, walk.map, walk.candidates);
   EXPECT_GT(culled.size(), 10U);
@@ -241,7 +239,7 @@ TEST(Culling, BoundsThatTheRecentKeyframesBreakLeaveThoseAlone) {
   options.recent_keyframes = 10;
   cullKeyframes(options, walk.map, walk.candidates);
   EXPECT_EQ(idsOf(walk.map), (std::set<KeyframeId>{0, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29}));
-  EXPECT_EQ(mapProblem(camera, walk.map), "");
+  EXPECT_EQ(mapProblem(Walk::camera(), walk.map), "");
   Walk small = walkOf(1);
   EXPECT_TRUE(cullKeyframes(options, small.map, small.candidates).empty());
 }
@@ -251,12 +249,12 @@ TEST(Culling, LinesStayWhileTheyAreSeen) {
   Walk walk = standing(20);
   CullingOptions options = withBounds(9, 1000);  // of which 0 to 3 and 15 to 19 stay
   options.other_views = 100;
-  addSeenLine(camera, 0, {8, 9, 16}, walk.map);
-  addSeenLine(camera, 1, {10, 11}, walk.map);
-  ASSERT_EQ(mapProblem(camera, walk.map), "");
+  addSeenLine(Walk::camera(), 0, {8, 9, 16}, walk.map);
+  addSeenLine(Walk::camera(), 1, {10, 11}, walk.map);
+  ASSERT_EQ(mapProblem(Walk::camera(), walk.map), "");
   const SpaceLine was = inWorld(walk.map, walk.map.lines.at(0));
   cullKeyframes(options, walk.map, walk.candidates);
-  EXPECT_EQ(mapProblem(camera, walk.map), "");
+  EXPECT_EQ(mapProblem(Walk::camera(), walk.map), "");
   ASSERT_EQ(walk.map.lines.size(), 1U);
   const MapLine& line = walk.map.lines.at(0);
   EXPECT_EQ(line.host, 16);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mapping/initial_frames.h"
+#include "mapping/initial_structure.h"
 #include "unit/mapping/edge_scene.h"
 
 namespace edgeslam::test {
@@ -56,6 +57,21 @@ inline InitialFrames initialFrames(const Camera& camera, const EdgeScene& scene,
   for (std::size_t k = 1; k < poses.size(); ++k)
     addFrame(frames, seen(camera, scene, poses[k], static_cast<std::int64_t>(k), -1));
   return frames;
+}
+
+// The scene as it is, seen from `first_T_camera`, the poses of the frames since the first that have these indices.
+// Depths are known to a twentieth.
+inline InitialStructure trueStructure(const EdgeScene& scene, const InitialFrames& frames,
+                                      const std::vector<std::size_t>& indices,
+                                      const std::vector<Pose>& first_T_camera) {
+  InitialStructure structure;
+  structure.frames = indices;
+  structure.first_T_camera = first_T_camera;
+  for (const PointObservation& observation : frames.first.observations) {
+    structure.inverse_depths.push_back(1 / scene.points[static_cast<std::size_t>(observation.point)].position.norm());
+    structure.depth_sigmas.push_back(0.05 * structure.inverse_depths.back());
+  }
+  return structure;
 }
 
 inline double distance(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }

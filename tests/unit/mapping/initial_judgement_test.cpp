@@ -8,20 +8,7 @@
 namespace edgeslam {
 namespace {
 
-const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
-const test::EdgeScene scene = test::framesOnAWall(4);
-
-// The true structure of the first frame and the one at this pose.
-InitialStructure truth(const InitialFrames& frames, const Pose& pose) {
-  InitialStructure structure;
-  structure.frames = {0};
-  structure.first_T_camera = {pose};
-  for (const PointObservation& observation : frames.first.observations) {
-    structure.inverse_depths.push_back(1 / scene.points[static_cast<std::size_t>(observation.point)].position.norm());
-    structure.depth_sigmas.push_back(0.05 * structure.inverse_depths.back());
-  }
-  return structure;
-}
+const test::EdgeScene judged_wall = test::framesOnAWall(4);
 
 InitialEvidence enough() {
   InitialEvidence evidence;
@@ -34,19 +21,21 @@ InitialEvidence enough() {
 }
 
 TEST(InitialJudgement, ARotationAloneMovesNothing) {
-  const InitialFrames turned = test::initialFrames(camera, scene, {Pose(), {rotationExp({0, 0.1, 0}), {0, 0, 0}}});
-  EXPECT_LT(displacementLessRotation(camera, turned), 0.1);
-  const InitialFrames moved = test::initialFrames(camera, scene, {Pose(), test::at(0.3, 0.1)});
-  EXPECT_GT(displacementLessRotation(camera, moved), 3);
+  const InitialFrames turned =
+      test::initialFrames(test::distorted_camera, judged_wall, {Pose(), {rotationExp({0, 0.1, 0}), {0, 0, 0}}});
+  EXPECT_LT(displacementLessRotation(test::distorted_camera, turned), 0.1);
+  const InitialFrames moved = test::initialFrames(test::distorted_camera, judged_wall, {Pose(), test::at(0.3, 0.1)});
+  EXPECT_GT(displacementLessRotation(test::distorted_camera, moved), 3);
   InitialFrames nothing_seen = moved;
   nothing_seen.since.back().observations.clear();
-  EXPECT_EQ(displacementLessRotation(camera, nothing_seen), 0);
+  EXPECT_EQ(displacementLessRotation(test::distorted_camera, nothing_seen), 0);
 }
 
 TEST(InitialJudgement, TheTruthHasItsParallaxAndItsQuality) {
   const Pose pose = test::at(0.3);
-  const InitialFrames frames = test::initialFrames(camera, scene, {Pose(), pose});
-  const InitialEvidence evidence = judgeInitialStructure(frames, truth(frames, pose), InitialisationOptions());
+  const InitialFrames frames = test::initialFrames(test::distorted_camera, judged_wall, {Pose(), pose});
+  const InitialEvidence evidence =
+      judgeInitialStructure(frames, test::trueStructure(judged_wall, frames, {0}, {pose}), InitialisationOptions());
   EXPECT_GT(evidence.followed, 300);
   EXPECT_EQ(evidence.points, evidence.followed);
   EXPECT_NEAR(evidence.parallax_deg, 5, 1.5);  // 0.3 seen from a distance of about 3
@@ -75,8 +64,8 @@ TEST(InitialJudgement, AnEarlyStartNeedsMoreThatSpeaksForIt) {
 
 TEST(InitialJudgement, PointsOfUncertainDepthDoNotCount) {
   const Pose pose = test::at(0.3);
-  const InitialFrames frames = test::initialFrames(camera, scene, {Pose(), pose});
-  InitialStructure structure = truth(frames, pose);
+  const InitialFrames frames = test::initialFrames(test::distorted_camera, judged_wall, {Pose(), pose});
+  InitialStructure structure = test::trueStructure(judged_wall, frames, {0}, {pose});
   for (double& sigma : structure.depth_sigmas) sigma *= 10;
   const InitialEvidence evidence = judgeInitialStructure(frames, structure, InitialisationOptions());
   EXPECT_GT(evidence.followed, 300);

@@ -8,25 +8,17 @@
 namespace edgeslam {
 namespace {
 
-const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
-const test::EdgeScene scene = test::framesOnAWall(5);
+const test::EdgeScene mapped_wall = test::framesOnAWall(5);
 
-std::vector<Pose> path() { return test::row(7, 0.05); }
+std::vector<Pose> straightPath() { return test::row(7, 0.05); }
 
-InitialStructure truth(const InitialFrames& frames) {
-  InitialStructure structure;
-  structure.frames = {2, 5};
-  structure.first_T_camera = {path()[3], path()[6]};
-  for (const PointObservation& observation : frames.first.observations) {
-    structure.inverse_depths.push_back(1 / scene.points[static_cast<std::size_t>(observation.point)].position.norm());
-    structure.depth_sigmas.push_back(0.05 * structure.inverse_depths.back());
-  }
-  return structure;
+InitialStructure structureOf(const InitialFrames& frames) {
+  return test::trueStructure(mapped_wall, frames, {2, 5}, {straightPath()[3], straightPath()[6]});
 }
 
 TEST(InitialMap, HasTheStructuresFramesAndItsKnownPoints) {
-  InitialFrames frames = test::initialFrames(camera, scene, path());
-  InitialStructure structure = truth(frames);
+  InitialFrames frames = test::initialFrames(test::distorted_camera, mapped_wall, straightPath());
+  InitialStructure structure = structureOf(frames);
   const PointId uncertain = frames.first.observations[0].point, unseen = frames.first.observations[1].point;
   structure.depth_sigmas[0] = structure.inverse_depths[0];
   for (TrackedFrame& frame : frames.since) {
@@ -39,7 +31,7 @@ TEST(InitialMap, HasTheStructuresFramesAndItsKnownPoints) {
   EXPECT_EQ(map.keyframes[0].reason, "first");
   EXPECT_EQ(map.keyframes[2].reason, "initialisation");
   EXPECT_EQ(map.keyframes[2].frame_index, 6);
-  EXPECT_EQ(map.keyframes[2].world_T_camera.translation, path()[6].translation);
+  EXPECT_EQ(map.keyframes[2].world_T_camera.translation, straightPath()[6].translation);
   EXPECT_EQ(map.points.count(uncertain), 0U);
   EXPECT_EQ(map.points.count(unseen), 0U);
   EXPECT_GT(map.points.size(), frames.first.observations.size() / 2);
@@ -47,19 +39,19 @@ TEST(InitialMap, HasTheStructuresFramesAndItsKnownPoints) {
 }
 
 TEST(InitialMap, FramesThatItWasNotMadeOfAreLocatedToo) {
-  const InitialFrames frames = test::initialFrames(camera, scene, path());
-  const auto poses = posesOfInitialFrames(camera, frames, truth(frames));
+  const InitialFrames frames = test::initialFrames(test::distorted_camera, mapped_wall, straightPath());
+  const auto poses = posesOfInitialFrames(test::distorted_camera, frames, structureOf(frames));
   ASSERT_EQ(poses.size(), 7U);
   for (std::size_t k = 0; k < poses.size(); ++k) {
     EXPECT_EQ(poses[k].first, static_cast<std::int64_t>(k));
-    EXPECT_LT(test::distance(poses[k].second, path()[k]), 1e-6);
+    EXPECT_LT(test::distance(poses[k].second, straightPath()[k]), 1e-6);
   }
 }
 
 TEST(InitialMap, PosesEndWhereAFrameCannotBeLocated) {
-  InitialFrames frames = test::initialFrames(camera, scene, path());
+  InitialFrames frames = test::initialFrames(test::distorted_camera, mapped_wall, straightPath());
   frames.since[2].observations.clear();
-  const auto poses = posesOfInitialFrames(camera, frames, truth(frames));
+  const auto poses = posesOfInitialFrames(test::distorted_camera, frames, structureOf(frames));
   ASSERT_EQ(poses.size(), 4U);
   EXPECT_EQ(poses[0].first, 0);
   EXPECT_EQ(poses[1].first, 4);

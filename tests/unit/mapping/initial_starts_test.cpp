@@ -9,12 +9,10 @@
 namespace edgeslam {
 namespace {
 
-const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
-
 InitialFrames framesTowards(const Eigen::Vector3d& direction) {
   std::vector<Pose> poses;
   for (int i = 0; i <= 20; ++i) poses.push_back({rotationExp({0.001 * i, -0.002 * i, 0}), 0.03 * i * direction});
-  return test::initialFrames(camera, test::framesOnAWall(2), poses);
+  return test::initialFrames(test::distorted_camera, test::framesOnAWall(2), poses);
 }
 
 const InitialStart* named(const std::vector<InitialStart>& starts, const std::string& method) {
@@ -23,7 +21,7 @@ const InitialStart* named(const std::vector<InitialStart>& starts, const std::st
   return found == starts.end() ? nullptr : &*found;
 }
 
-double directionError(const InitialStart& start, const Eigen::Vector3d& direction) {
+double directionErrorRad(const InitialStart& start, const Eigen::Vector3d& direction) {
   return std::acos(std::clamp(start.first_T_camera.back().translation.normalized().dot(direction), -1.0, 1.0));
 }
 
@@ -42,12 +40,12 @@ TEST(InitialStarts, TheFollowedStartIsWhatTrackingSays) {
 TEST(InitialStarts, TheFivePointStartFindsAnyDirection) {
   const Eigen::Vector3d direction = Eigen::Vector3d(0.6, -0.5, 0.3).normalized();
   InitialisationOptions options;
-  const std::optional<InitialStart> start = fivePointStart(camera, framesTowards(direction), options);
+  const std::optional<InitialStart> start = fivePointStart(test::distorted_camera, framesTowards(direction), options);
   ASSERT_TRUE(start);
   EXPECT_EQ(start->method, "five-point");
-  EXPECT_LT(directionError(*start, direction), 0.01);
+  EXPECT_LT(directionErrorRad(*start, direction), 0.01);
   options.five_point_corners = 1000;
-  EXPECT_FALSE(fivePointStart(camera, framesTowards(direction), options));
+  EXPECT_FALSE(fivePointStart(test::distorted_camera, framesTowards(direction), options));
 }
 
 TEST(InitialStarts, SteadyMotionsGoAlongTheAxes) {
@@ -57,10 +55,11 @@ TEST(InitialStarts, SteadyMotionsGoAlongTheAxes) {
                                                                            {"upward start", {0, -1, 0}}};
   for (const auto& [name, direction] : directions) {
     const InitialFrames frames = framesTowards(direction);
-    const std::vector<InitialStart> starts = steadyMotionStarts(camera, frames, InitialisationOptions());
+    const std::vector<InitialStart> starts =
+        steadyMotionStarts(test::distorted_camera, frames, InitialisationOptions());
     const InitialStart* start = named(starts, name);
     ASSERT_NE(start, nullptr) << name;
-    EXPECT_LT(directionError(*start, direction), 1e-6) << name;
+    EXPECT_LT(directionErrorRad(*start, direction), 1e-6) << name;
     ASSERT_EQ(start->inverse_depths.size(), frames.first.observations.size());
     std::vector<double> depths = start->inverse_depths;
     EXPECT_NEAR(upperMedian(depths), 1, 0.1) << name;
@@ -72,7 +71,7 @@ TEST(InitialStarts, DepthsFollowFromTheMotion) {
   const InitialFrames frames = framesTowards({1, 0, 0});
   const std::vector<double> unknown(frames.first.observations.size(), 0);
   InitialStart start = followedStart(frames, unknown, InitialisationOptions());
-  const std::optional<InitialStart> found = withTriangulatedDepths(camera, frames, start);
+  const std::optional<InitialStart> found = withTriangulatedDepths(test::distorted_camera, frames, start);
   ASSERT_TRUE(found);
   const test::EdgeScene scene = test::framesOnAWall(2);
   const double scale = found->first_T_camera.back().translation.x() / start.first_T_camera.back().translation.x();
@@ -82,14 +81,14 @@ TEST(InitialStarts, DepthsFollowFromTheMotion) {
     EXPECT_NEAR(scale * found->inverse_depths[i] * scene.points[point].position.norm(), 1, 0.02) << i;
   }
   for (Pose& pose : start.first_T_camera) pose.translation.setZero();
-  EXPECT_FALSE(withTriangulatedDepths(camera, frames, start));
+  EXPECT_FALSE(withTriangulatedDepths(test::distorted_camera, frames, start));
 }
 
 TEST(InitialStarts, ThereIsNoneWithoutPointsInCommon) {
   InitialFrames frames = framesTowards({1, 0, 0});
   for (TrackedFrame& frame : frames.since) frame.observations.clear();
-  EXPECT_FALSE(fivePointStart(camera, frames, InitialisationOptions()));
-  EXPECT_TRUE(steadyMotionStarts(camera, frames, InitialisationOptions()).empty());
+  EXPECT_FALSE(fivePointStart(test::distorted_camera, frames, InitialisationOptions()));
+  EXPECT_TRUE(steadyMotionStarts(test::distorted_camera, frames, InitialisationOptions()).empty());
 }
 
 }  // namespace

@@ -12,14 +12,12 @@
 namespace edgeslam {
 namespace {
 
-const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
-
 using Path = std::function<Pose(int)>;
 // Measured pixels of frame `index` in place of those that a camera at the pose would see.
 using Spoil = std::function<void(int index, std::vector<PointObservation>&, test::Random&)>;
 
 struct Start {
-  Initialisation initialisation{camera, InitialisationOptions()};
+  Initialisation initialisation{test::distorted_camera, InitialisationOptions()};
   int accepted_at = -1;  // frame, or -1
   std::vector<PointId> first_points;
 };
@@ -37,7 +35,7 @@ Start run(
     TrackedFrame frame;
     frame.frame_index = i;
     frame.time_ns = 33333333LL * i;
-    frame.observations = test::observeAll(camera, scene, path(i), sight, random);
+    frame.observations = test::observeAll(test::distorted_camera, scene, path(i), sight, random);
     spoil(i, frame.observations, random);
     if (i == 0) {
       frame.kind = FrameKind::first;
@@ -58,7 +56,7 @@ Start run(
       track.sigma_tangent = static_cast<float>(observation.measurement.sigma_tangent);
       tracks.push_back(track);
     }
-    const FramePose pose = estimatePose(camera, view, tracks, last, FramePoseOptions());
+    const FramePose pose = estimatePose(test::distorted_camera, view, tracks, last, FramePoseOptions());
     last = frame.world_T_camera = pose.result.world_T_camera;
     if (start.initialisation.add(frame)) {
       start.accepted_at = i;
@@ -182,7 +180,7 @@ TEST(Initialisation, NoiseIsNeverTakenForAMap) {
         Eigen::Vector2d& pixel = observation.measurement.pixel;
         pixel += index * drift[static_cast<std::size_t>(observation.point)];
         pixel += Eigen::Vector2d(test::uniform(random, -2, 2), test::uniform(random, -2, 2));
-        observation.bearing = bearing(camera, pixel);
+        observation.bearing = bearing(test::distorted_camera, pixel);
       }
       frames = index;
     };
@@ -211,7 +209,8 @@ TEST(Initialisation, StartingAnewForgetsWhatWas) {
   TrackedFrame first;
   first.frame_index = 100;
   test::Random random(13);
-  first.observations = test::observeAll(camera, test::framesOnAWall(29), still(0), test::Sight(), random);
+  first.observations =
+      test::observeAll(test::distorted_camera, test::framesOnAWall(29), still(0), test::Sight(), random);
   first.observations.resize(40);
   start.initialisation.start(first);
   MapView view;

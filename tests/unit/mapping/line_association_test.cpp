@@ -10,17 +10,15 @@
 namespace edgeslam::test {
 namespace {
 
-Camera camera() { return testCamera(CameraModel::pinhole_radial_tangential); }
-
-const std::vector<SpaceEdge> panels{{{-1.2, -0.6, 3}, {-1.2, 0.6, 3}},
-                                    {{-0.4, 0.6, 3.2}, {-0.4, -0.6, 3.2}},
-                                    {{0.5, -0.6, 2.8}, {0.5, 0.6, 2.8}},
-                                    {{1.2, 0.6, 3.1}, {1.2, -0.6, 3.1}}};
+const std::vector<SpaceEdge> four_borders{{{-1.2, -0.6, 3}, {-1.2, 0.6, 3}},
+                                          {{-0.4, 0.6, 3.2}, {-0.4, -0.6, 3.2}},
+                                          {{0.5, -0.6, 2.8}, {0.5, 0.6, 2.8}},
+                                          {{1.2, 0.6, 3.1}, {1.2, -0.6, 3.1}}};
 
 // Keyframe `id` at x = 0.1 * id, that sees all panels.
-Keyframe keyframeAt(KeyframeId id, const std::vector<SpaceEdge>& edges = panels) {
+Keyframe keyframeAt(KeyframeId id, const std::vector<SpaceEdge>& edges = four_borders) {
   Random random(1);
-  return keyframeThatSees(camera(), edges, id, at(0.1 * id, 0, 0), {}, random);
+  return keyframeThatSees(distorted_camera, edges, id, poseAt(0.1 * id, 0, 0), {}, random);
 }
 
 // Two keyframes with all lines placed, and a third one without any.
@@ -28,7 +26,7 @@ Map mapWithNewKeyframe() {
   Map map;
   map.keyframes.push_back(keyframeAt(0));
   map.keyframes.push_back(keyframeAt(1));
-  addPlacedLines(panels, map);
+  addPlacedLines(four_borders, map);
   map.keyframes.push_back(keyframeAt(2));
   return map;
 }
@@ -48,9 +46,9 @@ const std::vector<LineId> all_lines{0, 1, 2, 3};
 TEST(LineAssociation, BeginsALineForEachEdgeAtFirst) {
   Map map;
   map.keyframes.push_back(keyframeAt(0));
-  associateLines(camera(), {}, 0, map);
+  associateLines(distorted_camera, {}, 0, map);
   EXPECT_EQ(linesSeenBy(map.keyframes[0]), all_lines);
-  ASSERT_EQ(map.lines.size(), panels.size());
+  ASSERT_EQ(map.lines.size(), four_borders.size());
   for (const auto& [id, line] : map.lines) {
     EXPECT_EQ(line.id, id);
     EXPECT_EQ(line.host, 0);
@@ -63,7 +61,7 @@ TEST(LineAssociation, BeginsALineForEachEdgeAtFirst) {
 TEST(LineAssociation, FollowsTheTracksWherePlacesWouldNotTell) {
   Map map = mapWithNewKeyframe();
   for (auto& [id, line] : map.lines) line.is_placed = false;
-  associateLines(camera(), {}, 2, map);
+  associateLines(distorted_camera, {}, 2, map);
   EXPECT_EQ(linesSeenBy(map.keyframes[2]), all_lines);
   for (const auto& [id, line] : map.lines) EXPECT_EQ(line.seen_in, (std::vector<KeyframeId>{0, 1, 2}));
 }
@@ -82,31 +80,31 @@ TEST(LineAssociation, NeedsThreeTracksAndHalfOfThem) {
     }
   });
   ASSERT_EQ(moved_to_third, tracks_on_edge);
-  associateLines(camera(), {}, 2, map);
+  associateLines(distorted_camera, {}, 2, map);
   EXPECT_EQ(linesSeenBy(keyframe), (std::vector<LineId>{4, 1, 2, 5}));
 }
 
 TEST(LineAssociation, KnowsAPlacedLineAgainByWhereItProjects) {
   Map map = mapWithNewKeyframe();
   renumberTracks(map.keyframes[2]);
-  associateLines(camera(), {}, 2, map);
+  associateLines(distorted_camera, {}, 2, map);
   EXPECT_EQ(linesSeenBy(map.keyframes[2]), all_lines);
-  EXPECT_EQ(map.lines.size(), panels.size());
+  EXPECT_EQ(map.lines.size(), four_borders.size());
 }
 
 TEST(LineAssociation, AsksForTheSameBrighterSide) {
-  std::vector<SpaceEdge> turned = panels;
+  std::vector<SpaceEdge> turned = four_borders;
   for (SpaceEdge& edge : turned) std::swap(edge.from, edge.to);
   Map map = mapWithNewKeyframe();
   map.keyframes[2] = keyframeAt(2, turned);
   renumberTracks(map.keyframes[2]);
-  associateLines(camera(), {}, 2, map);
+  associateLines(distorted_camera, {}, 2, map);
   EXPECT_EQ(linesSeenBy(map.keyframes[2]), (std::vector<LineId>{4, 5, 6, 7}));
 }
 
 // 0.015 m at 3 m are 2 px, which one line may be off; the other side of a seam is as near.
 TEST(LineAssociation, TakesNoneOfTwoThatAreAsNear) {
-  std::vector<SpaceEdge> moved = panels;
+  std::vector<SpaceEdge> moved = four_borders;
   for (SpaceEdge& edge : moved) {
     edge.from.x() += 0.015;
     edge.to.x() += 0.015;
@@ -115,14 +113,14 @@ TEST(LineAssociation, TakesNoneOfTwoThatAreAsNear) {
   map.keyframes[2] = keyframeAt(2, moved);
   renumberTracks(map.keyframes[2]);
   Map with_seam = map;
-  associateLines(camera(), {}, 2, map);
+  associateLines(distorted_camera, {}, 2, map);
   EXPECT_EQ(linesSeenBy(map.keyframes[2]), all_lines);
 
   MapLine seam = with_seam.lines.at(1);
   seam.id = with_seam.next_line++;
   seam.in_host.point.x() += 0.032;
   with_seam.lines.emplace(seam.id, seam);
-  associateLines(camera(), {}, 2, with_seam);
+  associateLines(distorted_camera, {}, 2, with_seam);
   EXPECT_EQ(linesSeenBy(with_seam.keyframes[2]), (std::vector<LineId>{0, 5, 2, 3}));
 }
 
@@ -133,18 +131,18 @@ TEST(LineAssociation, AsksForTheSamePartOfALine) {
     line.begin = -0.05;
     line.end = 0.05;
   }
-  std::vector<SpaceEdge> upper = panels;
+  std::vector<SpaceEdge> upper = four_borders;
   for (SpaceEdge& edge : upper) (edge.from.y() > 0 ? edge.from : edge.to).y() = -0.3;
   map.keyframes[2] = keyframeAt(2, upper);
   renumberTracks(map.keyframes[2]);
-  associateLines(camera(), {}, 2, map);
+  associateLines(distorted_camera, {}, 2, map);
   EXPECT_EQ(linesSeenBy(map.keyframes[2]), (std::vector<LineId>{4, 5, 6, 7}));
 }
 
 TEST(LineAssociation, KeepsToItsWorld) {
   Map map = mapWithNewKeyframe();
   map.keyframes[2].world = 1;
-  associateLines(camera(), {}, 2, map);
+  associateLines(distorted_camera, {}, 2, map);
   EXPECT_EQ(linesSeenBy(map.keyframes[2]), (std::vector<LineId>{4, 5, 6, 7}));
 }
 

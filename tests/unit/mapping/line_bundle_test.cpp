@@ -12,8 +12,6 @@
 namespace edgeslam::test {
 namespace {
 
-Camera camera() { return testCamera(CameraModel::pinhole_radial_tangential); }
-
 // Borders of panels that stand zig-zag, with a floor and a ceiling.
 std::vector<SpaceEdge> zigzag() {
   std::vector<SpaceEdge> edges;
@@ -27,17 +25,17 @@ std::vector<SpaceEdge> zigzag() {
   return edges;
 }
 
-const std::vector<SpaceEdge> edges = zigzag();
+const std::vector<SpaceEdge> zigzag_edges = zigzag();
 
 // Of keyframes that go sideways along the panels, with their lines placed, and every track a point on its line.
 Map mapOfPanels(const EdgeSight& sight, Random& random, int keyframes = 5) {
   Map map;
   for (KeyframeId id = 0; id < keyframes; ++id) {
-    const Pose pose = at(0.08 * id, 0.02 * (id % 3), 0.03 * (id % 2), {0.01 * id, -0.02 * id, 0});
-    map.keyframes.push_back(keyframeThatSees(camera(), edges, id, pose, sight, random));
+    const Pose pose = poseAt(0.08 * id, 0.02 * (id % 3), 0.03 * (id % 2), {0.01 * id, -0.02 * id, 0});
+    map.keyframes.push_back(keyframeThatSees(distorted_camera, zigzag_edges, id, pose, sight, random));
   }
-  addPlacedLines(edges, map);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
+  addPlacedLines(zigzag_edges, map);
+  for (std::size_t i = 0; i < zigzag_edges.size(); ++i) {
     for (int k = 0; k < tracks_on_edge; ++k) {
       MapPoint point;
       point.id = trackOf(i, k);
@@ -51,7 +49,7 @@ Map mapOfPanels(const EdgeSight& sight, Random& random, int keyframes = 5) {
         }
         hosted = true;
         const double share = (k + 1.0) / (tracks_on_edge + 1);
-        const Eigen::Vector3d position = edges[i].from + share * (edges[i].to - edges[i].from);
+        const Eigen::Vector3d position = zigzag_edges[i].from + share * (zigzag_edges[i].to - zigzag_edges[i].from);
         point.host = keyframe.id;
         point.host_bearing = seen->bearing;
         point.inverse_depth = 1 / (keyframe.world_T_camera.inverse() * position).norm();
@@ -64,7 +62,7 @@ Map mapOfPanels(const EdgeSight& sight, Random& random, int keyframes = 5) {
 }
 
 double offItsLine(const Map& map, PointId id) {
-  const SpaceLine line = lineThrough(edges[static_cast<std::size_t>(id / 100)]);
+  const SpaceLine line = lineThrough(zigzag_edges[static_cast<std::size_t>(id / 100)]);
   const Eigen::Vector3d position = worldPosition(map, map.points.at(id));
   return (closestPoint(line, position) - position).norm();
 }
@@ -104,7 +102,7 @@ TEST(LineBundle, AllKeyframesThatSeeALineTakePart) {
     return static_cast<int>(std::find(cameras.begin(), cameras.end(), keyframe) - cameras.begin());
   };
   const LinesInBundle added = addLines({4}, map, cameraOf, problem);
-  EXPECT_EQ(added.lines.size(), edges.size());
+  EXPECT_EQ(added.lines.size(), zigzag_edges.size());
   EXPECT_EQ(added.line_of_point.size(), map.points.size());
   EXPECT_EQ(cameras.size(), 5U);
   std::size_t views = 0;
@@ -123,8 +121,8 @@ TEST(LineBundle, BringsPosesAndPointsToTheirPlaces) {
   for (auto& [id, point] : map.points) point.inverse_depth *= uniform(random, 0.9, 1.1);
   LocalAdjustmentOptions options;
   options.bundle.iterations = 30;
-  ASSERT_TRUE(adjustKeyframes(camera(), options, {0, 1, 2, 3, 4}, {}, map));
-  EXPECT_EQ(map.lines.size(), edges.size());
+  ASSERT_TRUE(adjustKeyframes(distorted_camera, options, {0, 1, 2, 3, 4}, {}, map));
+  EXPECT_EQ(map.lines.size(), zigzag_edges.size());
   // The gauge of scale keeps the distance of the farthest keyframe as it was put.
   const auto centre = [](const Map& of, KeyframeId id) { return of.keyframes[id].world_T_camera.translation; };
   const double scale = centre(map, 4).norm() / centre(truth, 4).norm();
@@ -147,7 +145,7 @@ TEST(LineBundle, PutsPointsOnTheirLines) {
     point.inverse_depth *= 1.1;
     ASSERT_GT(offItsLine(map, id), 0.01);
   }
-  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4}, {0, 1}, map));
+  ASSERT_TRUE(adjustKeyframes(distorted_camera, {}, {2, 3, 4}, {0, 1}, map));
   for (const auto& [id, point] : map.points) EXPECT_LT(offItsLine(map, id), 1e-3) << id;
 }
 
@@ -159,13 +157,13 @@ TEST(LineBundle, DissolvesALineThatItsViewsContradict) {
     for (SeenEdge& edge : keyframe.straight_edges) {
       if (edge.line != 6) continue;
       const double off = keyframe.id % 2 == 0 ? 3 : -3;
-      edge.from = endAt(camera(), edge.from.pixel + Eigen::Vector2d(off, off));
-      edge.to = endAt(camera(), edge.to.pixel + Eigen::Vector2d(off, off));
+      edge.from = endAt(distorted_camera, edge.from.pixel + Eigen::Vector2d(off, off));
+      edge.to = endAt(distorted_camera, edge.to.pixel + Eigen::Vector2d(off, off));
     }
   }
-  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4}, {0, 1}, map));
+  ASSERT_TRUE(adjustKeyframes(distorted_camera, {}, {2, 3, 4}, {0, 1}, map));
   EXPECT_EQ(map.lines.count(6), 0U);
-  EXPECT_EQ(map.lines.size(), edges.size() - 1);
+  EXPECT_EQ(map.lines.size(), zigzag_edges.size() - 1);
   EXPECT_EQ(map.points.size(), points);  // which are points again
   for (const Keyframe& keyframe : map.keyframes) {
     for (const SeenEdge& edge : keyframe.straight_edges) EXPECT_NE(edge.line, 6);
@@ -184,15 +182,15 @@ TEST(LineBundle, DissolvesTheEdgeOfADoorThatOpens) {
     const Pose camera_T_world = keyframe.world_T_camera.inverse();
     for (SeenEdge& edge : keyframe.straight_edges) {
       if (edge.line != 0) continue;
-      edge.from = endAt(camera(), project(camera(), camera_T_world * (edges[0].from + moved)));
-      edge.to = endAt(camera(), project(camera(), camera_T_world * (edges[0].to + moved)));
+      edge.from = endAt(distorted_camera, project(distorted_camera, camera_T_world * (zigzag_edges[0].from + moved)));
+      edge.to = endAt(distorted_camera, project(distorted_camera, camera_T_world * (zigzag_edges[0].to + moved)));
     }
   }
-  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4, 5, 6, 7}, {0, 1}, map));
+  ASSERT_TRUE(adjustKeyframes(distorted_camera, {}, {2, 3, 4, 5, 6, 7}, {0, 1}, map));
   EXPECT_EQ(map.lines.count(0), 0U);
-  EXPECT_EQ(map.lines.size(), edges.size() - 1);                                // which outvoted it
-  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4, 5, 6, 7}, {0, 1}, map));  // as with the next keyframe
-  const Pose truth = at(0.08 * 7, 0.02, 0.03, {0.07, -0.14, 0});
+  EXPECT_EQ(map.lines.size(), zigzag_edges.size() - 1);                                 // which outvoted it
+  ASSERT_TRUE(adjustKeyframes(distorted_camera, {}, {2, 3, 4, 5, 6, 7}, {0, 1}, map));  // as with the next keyframe
+  const Pose truth = poseAt(0.08 * 7, 0.02, 0.03, {0.07, -0.14, 0});
   EXPECT_LT((map.keyframes.back().world_T_camera.translation - truth.translation).norm(), 0.02);
 }
 
@@ -202,8 +200,8 @@ TEST(LineBundle, SameBytesTwice) {
   sight.noise = 1;
   const Map map = mapOfPanels(sight, random);
   Map first = map, second = map;
-  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4}, {0, 1}, first));
-  ASSERT_TRUE(adjustKeyframes(camera(), {}, {2, 3, 4}, {0, 1}, second));
+  ASSERT_TRUE(adjustKeyframes(distorted_camera, {}, {2, 3, 4}, {0, 1}, first));
+  ASSERT_TRUE(adjustKeyframes(distorted_camera, {}, {2, 3, 4}, {0, 1}, second));
   for (const auto& [id, line] : first.lines) {
     EXPECT_EQ(line.in_host.point, second.lines.at(id).in_host.point);
     EXPECT_EQ(line.in_host.direction, second.lines.at(id).in_host.direction);

@@ -85,7 +85,7 @@ inline void addPlacedLines(const std::vector<SpaceEdge>& edges, Map& map) {
   }
 }
 
-inline Pose at(double x, double y, double z, const Eigen::Vector3d& turned = Eigen::Vector3d::Zero()) {
+inline Pose poseAt(double x, double y, double z, const Eigen::Vector3d& turned = Eigen::Vector3d::Zero()) {
   return {rotationExp(turned), {x, y, z}};
 }
 

@@ -13,22 +13,21 @@
 namespace edgeslam::test {
 namespace {
 
-const Camera camera = testCamera(CameraModel::pinhole_radial_tangential);
-
-TrackedFrame seen(const EdgeScene& scene, const Pose& world_T_camera, std::int64_t frame_index, KeyframeId keyframe) {
-  return test::seen(camera, scene, world_T_camera, frame_index, keyframe);
+TrackedFrame trackedFrame(const EdgeScene& scene, const Pose& world_T_camera, std::int64_t frame_index,
+                          KeyframeId keyframe) {
+  return test::seen(distorted_camera, scene, world_T_camera, frame_index, keyframe);
 }
 
-Pose sideways(int i) { return {rotationExp({0.002 * i, -0.002 * i, 0.002 * i}), {0.05 * i, 0.01 * i, 0.01 * i}}; }
+Pose pastTheWall(int i) { return {rotationExp({0.002 * i, -0.002 * i, 0.002 * i}), {0.05 * i, 0.01 * i, 0.01 * i}}; }
 
 // Started as tracking does, with poses in units of the flat start's depth, before a wall 3 away.
 Mapper started(MapperOptions options = {}) {
   options.initialisation.frames_between = 3;  // what is seen is exact: few do, and fast
   options.initialisation.five_point_corners = 1000;
-  Mapper mapper(camera, options);
+  Mapper mapper(distorted_camera, options);
   const EdgeScene scene = framesOnAWall(21);
   for (int i = 0; i < 90 && !mapper.initialised(); ++i) {
-    TrackedFrame frame = seen(scene, sideways(i), i, i == 0 ? 0 : -1);
+    TrackedFrame frame = trackedFrame(scene, pastTheWall(i), i, i == 0 ? 0 : -1);
     frame.world_T_camera.translation /= 3;
     mapper.add(frame);
   }
@@ -37,15 +36,15 @@ Mapper started(MapperOptions options = {}) {
 
 // In a map that is known: keyframes at these poses, whose world is the scene's.
 Mapper mapperIn(const EdgeScene& scene, const std::vector<Pose>& poses, const MapperOptions& options = {}) {
-  Mapper mapper(camera, options);
-  mapper.goOnWith(mapFrom(camera, scene, poses));
+  Mapper mapper(distorted_camera, options);
+  mapper.goOnWith(mapFrom(distorted_camera, scene, poses));
   return mapper;
 }
 
 TEST(Mapper, TheStartGivesAMapAndPosesOfTheFramesBefore) {
   const Mapper mapper = started();
   ASSERT_TRUE(mapper.initialised());
-  EXPECT_EQ(mapProblem(camera, mapper.map()), "");
+  EXPECT_EQ(mapProblem(distorted_camera, mapper.map()), "");
   EXPECT_TRUE(mapper.view().initialised);
   EXPECT_EQ(mapper.view().origin_frame, 0);
   EXPECT_GT(mapper.earlyPoses().size(), 5U);
@@ -55,25 +54,25 @@ TEST(Mapper, TheStartGivesAMapAndPosesOfTheFramesBefore) {
 TEST(Mapper, AFirstFrameStartsAnew) {
   Mapper mapper = started();
   const std::uint64_t version = mapper.view().version;
-  EXPECT_FALSE(mapper.add(seen(framesOnAWall(22), Pose(), 200, 0)));
+  EXPECT_FALSE(mapper.add(trackedFrame(framesOnAWall(22), Pose(), 200, 0)));
   EXPECT_FALSE(mapper.initialised());
   EXPECT_TRUE(mapper.map().keyframes.empty());
   EXPECT_TRUE(mapper.map().points.empty());
   EXPECT_EQ(mapper.view().origin_frame, 200);
   EXPECT_GE(mapper.view().version, version);
-  EXPECT_FALSE(mapper.recover(seen(framesOnAWall(22), Pose(), 201, 1)).found);
+  EXPECT_FALSE(mapper.recover(trackedFrame(framesOnAWall(22), Pose(), 201, 1)).found);
 }
 
 TEST(Mapper, TrackingsKeyframeNumbersAreKeptAndNeverGoBack) {
   const EdgeScene scene = framesOnAWall(23);
   Mapper mapper = mapperIn(scene, row(4, 0.1));
-  ASSERT_TRUE(mapper.add(seen(scene, at(0.4), 100, 17)));
+  ASSERT_TRUE(mapper.add(trackedFrame(scene, at(0.4), 100, 17)));
   EXPECT_EQ(mapper.map().keyframes.back().id, 17);
   EXPECT_EQ(mapper.map().keyframes.back().frame_index, 100);
   EXPECT_EQ(mapper.map().keyframes.back().reason, "interval");
-  ASSERT_TRUE(mapper.add(seen(scene, at(0.5), 110, 9)));
+  ASSERT_TRUE(mapper.add(trackedFrame(scene, at(0.5), 110, 9)));
   EXPECT_EQ(mapper.map().keyframes.back().id, 18);
-  EXPECT_EQ(mapProblem(camera, mapper.map()), "");
+  EXPECT_EQ(mapProblem(distorted_camera, mapper.map()), "");
 }
 
 TEST(Mapper, AFrameThatWasOnItsWayWhenTheMapCameToStandIsNoKeyframe) {
@@ -83,7 +82,7 @@ TEST(Mapper, AFrameThatWasOnItsWayWhenTheMapCameToStandIsNoKeyframe) {
   const std::uint64_t version = mapper.view().version;
   const std::int64_t next = mapper.map().keyframes.back().frame_index + 1;
   const std::size_t early_poses = mapper.earlyPoses().size();
-  EXPECT_FALSE(mapper.add(seen(framesOnAWall(21), sideways(static_cast<int>(next)), next, -1)));
+  EXPECT_FALSE(mapper.add(trackedFrame(framesOnAWall(21), pastTheWall(static_cast<int>(next)), next, -1)));
   EXPECT_EQ(mapper.map().keyframes.back().id, latest);
   EXPECT_EQ(mapper.view().version, version);
   EXPECT_EQ(mapper.earlyPoses().size(), early_poses + 1) << "but it has a pose";
@@ -97,11 +96,11 @@ Mapper startedFromSpare(int frames) {
   MapperOptions options;
   options.initialisation.frames_between = 3;
   options.initialisation.five_point_corners = 1000;
-  Mapper mapper(camera, options);
+  Mapper mapper(distorted_camera, options);
   const EdgeScene scene = framesOnAWall(21);
   for (int i = 0; i < frames; ++i) {
     const Pose against = i < 6 ? Pose() : slowly(3);
-    TrackedFrame frame = seen(scene, slowly(i), i, i == 0 || i == 3 ? 0 : -1);
+    TrackedFrame frame = trackedFrame(scene, slowly(i), i, i == 0 || i == 3 ? 0 : -1);
     frame.world_T_camera = against.inverse() * frame.world_T_camera;
     frame.world_T_camera.translation /= 3;
     if (i > 0) frame.kind = i == 3 ? FrameKind::spare : FrameKind::start;
@@ -124,7 +123,7 @@ TEST(Mapper, AStartGoesOnFromItsSpareFrame) {
   EXPECT_EQ(startedFromSpare(7).view().origin_frame, 3);
   const Mapper mapper = startedFromSpare(60);
   ASSERT_TRUE(mapper.initialised());
-  EXPECT_EQ(mapProblem(camera, mapper.map()), "");
+  EXPECT_EQ(mapProblem(distorted_camera, mapper.map()), "");
   EXPECT_EQ(mapper.map().keyframes.front().frame_index, 3);
   EXPECT_EQ(mapper.map().keyframes.front().id, 0);
   EXPECT_EQ(mapper.earlyPoses().front().frame_index, 3);
@@ -137,18 +136,18 @@ TEST(Mapper, AStartGoesOnFromItsSpareFrame) {
 
 // Tracking gave the start up before it heard that its map stands.
 TEST(Mapper, AStartThatStoodTooLateGivesWayToItsSpareFrame) {
-  Mapper mapper(camera, MapperOptions());
+  Mapper mapper(distorted_camera, MapperOptions());
   const EdgeScene scene = framesOnAWall(21);
   int i = 0;
   for (; i < 90 && !mapper.initialised(); ++i) {
-    TrackedFrame frame = seen(scene, sideways(i), i, i == 0 || i == 2 ? 0 : -1);
+    TrackedFrame frame = trackedFrame(scene, pastTheWall(i), i, i == 0 || i == 2 ? 0 : -1);
     frame.world_T_camera.translation /= 3;
     frame.kind = i == 0 ? FrameKind::first : i == 2 ? FrameKind::spare : FrameKind::start;
     frame.start = 0;
     mapper.add(frame);
   }
   ASSERT_TRUE(mapper.initialised());
-  TrackedFrame frame = seen(scene, sideways(i), i, -1);
+  TrackedFrame frame = trackedFrame(scene, pastTheWall(i), i, -1);
   frame.start = 2;
   mapper.add(frame);
   EXPECT_EQ(mapper.view().origin_frame, 2);
@@ -162,7 +161,7 @@ TEST(Mapper, AStartThatStoodTooLateGivesWayToItsSpareFrame) {
 void startElsewhere(Mapper& mapper, std::int64_t first_frame, KeyframeId first_keyframe) {
   const EdgeScene scene = framesOnAWall(25);
   for (int i = 0; i < 90 && (i == 0 || !mapper.initialised()); ++i) {
-    TrackedFrame frame = seen(scene, sideways(i), first_frame + i, i == 0 ? first_keyframe : -1);
+    TrackedFrame frame = trackedFrame(scene, pastTheWall(i), first_frame + i, i == 0 ? first_keyframe : -1);
     frame.kind = i == 0 ? FrameKind::first : FrameKind::start;
     for (PointObservation& observation : frame.observations) observation.point += 1'000'000;
     frame.world_T_camera.translation /= 3;
@@ -179,7 +178,7 @@ TEST(Mapper, AStartAfterTheMapStandsBeginsAWorldBesideIt) {
   EXPECT_EQ(worldsOf(mapper.map()), (std::vector<int>{0, 1}));
   EXPECT_EQ(keyframesOf(mapper.map(), 0).size(), first.keyframes.size());
   EXPECT_EQ(keyframesOf(mapper.map(), 1).front(), 40);
-  EXPECT_EQ(mapProblem(camera, mapper.map()), "");
+  EXPECT_EQ(mapProblem(distorted_camera, mapper.map()), "");
   const MapView view = mapper.view();
   EXPECT_EQ(view.world, 1);
   EXPECT_EQ(view.keyframes.front().id, 40) << "tracking sees its own world";
@@ -193,7 +192,7 @@ TEST(Mapper, AStartAfterTheMapStandsBeginsAWorldBesideIt) {
 TEST(Mapper, FoundAgainInTheOldWorldItGoesOnThereAndForgetsTheStart) {
   Mapper mapper = started();
   const KeyframeId latest = mapper.map().keyframes.back().id;
-  TrackedFrame first = seen(framesOnAWall(25), Pose(), 500, 40);
+  TrackedFrame first = trackedFrame(framesOnAWall(25), Pose(), 500, 40);
   first.kind = FrameKind::first;
   mapper.add(first);
   EXPECT_FALSE(mapper.initialised());
@@ -201,9 +200,9 @@ TEST(Mapper, FoundAgainInTheOldWorldItGoesOnThereAndForgetsTheStart) {
   EXPECT_TRUE(mapper.initialised());
   EXPECT_EQ(mapper.view().keyframes.back().id, latest);
   // What of the start was on its way says nothing any more.
-  EXPECT_FALSE(mapper.add(seen(framesOnAWall(25), sideways(1), 501, -1)));
+  EXPECT_FALSE(mapper.add(trackedFrame(framesOnAWall(25), pastTheWall(1), 501, -1)));
   EXPECT_EQ(worldsOf(mapper.map()), std::vector<int>{0});
-  TrackedFrame next = seen(framesOnAWall(21), sideways(30), 510, 41);
+  TrackedFrame next = trackedFrame(framesOnAWall(21), pastTheWall(30), 510, 41);
   next.world_T_camera.translation /= 3;
   EXPECT_TRUE(mapper.add(next));
   EXPECT_EQ(mapper.map().keyframes.back().id, 41);
@@ -215,7 +214,7 @@ TEST(Mapper, AWorldThatStoodTooLateForTrackingIsForgotten) {
   Mapper mapper = started();
   startElsewhere(mapper, 500, 40);
   ASSERT_EQ(mapper.world(), 1);
-  TrackedFrame next = seen(framesOnAWall(21), sideways(30), 600, 41);
+  TrackedFrame next = trackedFrame(framesOnAWall(21), pastTheWall(30), 600, 41);
   next.world_T_camera.translation /= 3;
   next.world = 0;
   EXPECT_TRUE(mapper.add(next));
@@ -245,7 +244,7 @@ TEST(Mapper, WhatIsTrackedInAWorldThatWasJoinedIsPutIntoTheOther) {
     const Pose should_be = early_before[i].world == 0 ? was : moved(join.to_S_from, was);
     EXPECT_LT(distance(early_after[i].world_T_camera, should_be), 1e-9) << i;
   }
-  TrackedFrame next = seen(framesOnAWall(25), sideways(30), 600, 90);
+  TrackedFrame next = trackedFrame(framesOnAWall(25), pastTheWall(30), 600, 90);
   for (PointObservation& observation : next.observations) observation.point += 1'000'000;
   next.world_T_camera = before.keyframes.back().world_T_camera;
   next.world = 1;
@@ -258,7 +257,7 @@ TEST(Mapper, EveryKeyframeGivesANewerView) {
   Mapper mapper = mapperIn(scene, row(4, 0.1));
   std::uint64_t version = mapper.view().version;
   for (KeyframeId id = 4; id < 8; ++id) {
-    ASSERT_TRUE(mapper.add(seen(scene, at(0.1 * id), 10 * id, id)));
+    ASSERT_TRUE(mapper.add(trackedFrame(scene, at(0.1 * id), 10 * id, id)));
     const MapView view = mapper.view();
     EXPECT_GT(view.version, version);
     EXPECT_EQ(view.keyframes.back().id, id);
@@ -271,7 +270,7 @@ TEST(Mapper, AChangeOfTheWholeMapIsAppliedToWhatCameSinceToo) {
   const EdgeScene scene = framesOnAWall(23);
   Mapper mapper = mapperIn(scene, row(4, 0.1));
   const Map copy = mapper.map();
-  ASSERT_TRUE(mapper.add(seen(scene, at(0.4), 40, 4)));
+  ASSERT_TRUE(mapper.add(trackedFrame(scene, at(0.4), 40, 4)));
   const Map before = mapper.map();
   const std::uint64_t version = mapper.view().version;
   const Pose move{rotationExp({0.1, -0.2, 0.3}), {1, 2, 3}};
@@ -279,28 +278,28 @@ TEST(Mapper, AChangeOfTheWholeMapIsAppliedToWhatCameSinceToo) {
   for (Keyframe& keyframe : corrected.keyframes) keyframe.world_T_camera = move * keyframe.world_T_camera;
   mapper.apply(changeOf(copy, corrected));
   EXPECT_GT(mapper.view().version, version);
-  EXPECT_EQ(mapProblem(camera, mapper.map()), "");
+  EXPECT_EQ(mapProblem(distorted_camera, mapper.map()), "");
   for (const Keyframe& keyframe : mapper.map().keyframes) {
     const Pose& was = (keyframe.id < 4 ? copy : before).keyframes[keyframe.id].world_T_camera;
     EXPECT_LT(distance(keyframe.world_T_camera, move * was), 1e-9) << keyframe.id;
   }
   // And mapping goes on in it.
-  ASSERT_TRUE(mapper.add(seen(scene, move * at(0.5), 50, 5)));
+  ASSERT_TRUE(mapper.add(trackedFrame(scene, move * at(0.5), 50, 5)));
   EXPECT_EQ(mapper.view().keyframes.back().id, 5);
 }
 
 TEST(Mapper, RecoveryGivesTheLostFrameItsPoseAndMapsItsTracksOnce) {
   const EdgeScene scene = framesOnAWall(24);
-  Map before = mapFrom(camera, scene, {at(-0.3), at(-0.25, 0.02, 0.07), at(0)});
+  Map before = mapFrom(distorted_camera, scene, {at(-0.3), at(-0.25, 0.02, 0.07), at(0)});
   // The map knows a third of the points only; the others are tracks without a depth.
   for (auto point = before.points.begin(); point != before.points.end();) {
     point = point->first % 3 == 0 ? std::next(point) : before.points.erase(point);
   }
-  Mapper mapper(camera, MapperOptions());
+  Mapper mapper(distorted_camera, MapperOptions());
   mapper.goOnWith(before);
   const std::uint64_t version = mapper.view().version;
   const Pose truth = at(0.22, -0.06, -0.05);
-  TrackedFrame lost = seen(scene, truth, 70, 6);
+  TrackedFrame lost = trackedFrame(scene, truth, 70, 6);
   lost.world_T_camera = Pose{rotationExp({1, 2, 3}), {7, 8, 9}};  // is not known
   const RecoveryResult result = mapper.recover(lost);
   ASSERT_TRUE(result.found) << result.reason;
@@ -308,7 +307,7 @@ TEST(Mapper, RecoveryGivesTheLostFrameItsPoseAndMapsItsTracksOnce) {
   EXPECT_LT(rotationAngle(result.world_T_camera.rotation, truth.rotation), 1e-3);
 
   const Map& map = mapper.map();
-  EXPECT_EQ(mapProblem(camera, map), "");
+  EXPECT_EQ(mapProblem(distorted_camera, map), "");
   ASSERT_EQ(map.keyframes.size(), 4U);
   EXPECT_EQ(map.keyframes.back().id, 6);
   EXPECT_EQ(map.keyframes.back().frame_index, 70);
@@ -325,8 +324,8 @@ TEST(Mapper, RecoveryGivesTheLostFrameItsPoseAndMapsItsTracksOnce) {
     EXPECT_LT((worldPosition(map, found->second) - position).norm(), 0.02) << recovered.id;
   }
   // They go on as map points, not as candidates that would be mapped a second time.
-  ASSERT_TRUE(mapper.add(seen(scene, at(0.3, -0.06, -0.05), 80, 7)));
-  EXPECT_EQ(mapProblem(camera, mapper.map()), "");
+  ASSERT_TRUE(mapper.add(trackedFrame(scene, at(0.3, -0.06, -0.05), 80, 7)));
+  EXPECT_EQ(mapProblem(distorted_camera, mapper.map()), "");
   int followed = 0;
   for (const RecoveredPoint& recovered : result.points) {
     const auto found = mapper.map().points.find(recovered.id);
@@ -337,8 +336,8 @@ TEST(Mapper, RecoveryGivesTheLostFrameItsPoseAndMapsItsTracksOnce) {
 
 TEST(Mapper, RecoveryRefusedSaysWhyAndLeavesTheMapAlone) {
   const EdgeScene scene = framesOnAWall(24);
-  const TrackedFrame lost = seen(scene, at(0.22, -0.06), 70, 6);
-  Mapper none(camera, MapperOptions());
+  const TrackedFrame lost = trackedFrame(scene, at(0.22, -0.06), 70, 6);
+  Mapper none(distorted_camera, MapperOptions());
   EXPECT_FALSE(none.recover(lost).found);
   EXPECT_EQ(none.recover(lost).reason, "no map to go on from");
 
@@ -353,7 +352,7 @@ TEST(Mapper, RecoveryRefusedSaysWhyAndLeavesTheMapAlone) {
   TrackedFrame few = lost;
   few.observations.resize(10);
   EXPECT_NE(mapper.recover(few).reason.find("tracks run through"), std::string::npos) << mapper.recover(few).reason;
-  const RecoveryResult turned = mapper.recover(seen(scene, at(0.4, 0, 0.08), 70, 6));
+  const RecoveryResult turned = mapper.recover(trackedFrame(scene, at(0.4, 0, 0.08), 70, 6));
   EXPECT_FALSE(turned.found);
   EXPECT_NE(turned.reason.find("too little parallax"), std::string::npos) << turned.reason;
   EXPECT_EQ(mapper.view().version, version);
@@ -371,7 +370,7 @@ TEST(Mapper, CulledKeyframesAreHandedOutOnceInTheirOrder) {
   std::set<KeyframeId> there{0, 1, 2, 3};
   for (KeyframeId id = 4; id < 30; ++id) {
     there.insert(id);
-    mapper.add(seen(scene, at(0.5 * id), 10 * id, id));
+    mapper.add(trackedFrame(scene, at(0.5 * id), 10 * id, id));
     EXPECT_LE(mapper.map().keyframes.size(), 8U);
     if (id % 4 != 0) continue;  // what two keyframes or more brought about
     for (const CulledKeyframe& culled : mapper.takeCulled()) {

@@ -9,8 +9,6 @@
 namespace edgeslam::test {
 namespace {
 
-Camera camera() { return testCamera(CameraModel::pinhole_radial_tangential); }
-
 // The floor's two borders in a corridor, and no end of it: nothing tells how far the camera went along.
 const std::vector<SpaceEdge> corridor{{{-1, 1, 3}, {-1, 1, 8}}, {{1, 1, 8}, {1, 1, 3}}};
 
@@ -20,8 +18,8 @@ Map corridorMap(const std::vector<Pose>& poses, double slide_of_last = 0) {
   for (const Pose& pose : poses) {
     EdgeSight sight;
     sight.slide = map.keyframes.size() + 1 == poses.size() ? slide_of_last : 0;
-    map.keyframes.push_back(
-        keyframeThatSees(camera(), corridor, static_cast<KeyframeId>(map.keyframes.size()), pose, sight, random));
+    map.keyframes.push_back(keyframeThatSees(distorted_camera, corridor, static_cast<KeyframeId>(map.keyframes.size()),
+                                             pose, sight, random));
   }
   addPlacedLines(corridor, map);
   return map;
@@ -58,32 +56,32 @@ BundleProblem problemOf(const Map& map, double off) {
 
 int sameIndex(KeyframeId keyframe) { return keyframe; }
 
-const std::vector<Pose> walk{at(0, 0, 0), at(0.02, 0, 0.3), at(-0.01, 0.02, 0.6)};
+const std::vector<Pose> corridor_walk{poseAt(0, 0, 0), poseAt(0.02, 0, 0.3), poseAt(-0.01, 0.02, 0.6)};
 
 double errorAlong(const BundleProblem& problem) {
-  return problem.cameras.back().world_T_camera.translation.z() - walk.back().translation.z();
+  return problem.cameras.back().world_T_camera.translation.z() - corridor_walk.back().translation.z();
 }
 
 TEST(MotionAlongLines, IsWhatLinesAloneDoNotTell) {
-  const Map map = corridorMap(walk);
+  const Map map = corridorMap(corridor_walk);
   BundleProblem lines_only = problemOf(map, 0.2);
-  ASSERT_TRUE(adjustBundle(camera(), lines_only, {30, 2}).usable);
+  ASSERT_TRUE(adjustBundle(distorted_camera, lines_only, {30, 2}).usable);
   EXPECT_NEAR(errorAlong(lines_only), 0.2, 0.02);
 
   BundleProblem problem = problemOf(map, 0.2);
-  addMotionAlongLines(camera(), map, linesOf(map), sameIndex, problem);
-  ASSERT_TRUE(adjustBundle(camera(), problem, {30, 2}).usable);
+  addMotionAlongLines(distorted_camera, map, linesOf(map), sameIndex, problem);
+  ASSERT_TRUE(adjustBundle(distorted_camera, problem, {30, 2}).usable);
   EXPECT_NEAR(errorAlong(problem), 0, 1e-4);
 }
 
 // Tracks of a line slide together: however many they are, they say as much as one.
 TEST(MotionAlongLines, CountsALineOnce) {
-  Map map = corridorMap(walk);
+  Map map = corridorMap(corridor_walk);
   const auto cost = [&map] {
     BundleProblem problem = problemOf(map, 0.2);
-    addMotionAlongLines(camera(), map, linesOf(map), sameIndex, problem);
+    addMotionAlongLines(distorted_camera, map, linesOf(map), sameIndex, problem);
     problem.line_observations.clear();
-    return adjustBundle(camera(), problem, {1, 1e6}).initial_cost;
+    return adjustBundle(distorted_camera, problem, {1, 1e6}).initial_cost;
   };
   const double of_all = cost();
   for (Keyframe& keyframe : map.keyframes) {
@@ -95,10 +93,10 @@ TEST(MotionAlongLines, CountsALineOnce) {
 }
 
 TEST(MotionAlongLines, IsOfConsecutiveKeyframesOnly) {
-  const Map map = corridorMap(walk);
+  const Map map = corridorMap(corridor_walk);
   const auto added = [&](const std::vector<LineId>& lines, const std::function<int(KeyframeId)>& camera_of) {
     BundleProblem problem = problemOf(map, 0);
-    addMotionAlongLines(camera(), map, lines, camera_of, problem);
+    addMotionAlongLines(distorted_camera, map, lines, camera_of, problem);
     EXPECT_EQ(problem.points.size(), problem.observations.size());
     for (const BundleObservation& o : problem.observations) {
       EXPECT_EQ(o.camera, 2);
@@ -114,7 +112,7 @@ TEST(MotionAlongLines, IsOfConsecutiveKeyframesOnly) {
 }
 
 TEST(MotionAlongLines, IsOfTracksThatStayOnTheirLine) {
-  Map map = corridorMap(walk);
+  Map map = corridorMap(corridor_walk);
   test::changeEach(map.keyframes[1].observations, [&](PointObservation& seen) {
     if (seen.point == trackOf(0, 0)) seen.straight_edge = 1;
     if (seen.point == trackOf(0, 1)) seen.straight_edge = -1;
@@ -123,7 +121,7 @@ TEST(MotionAlongLines, IsOfTracksThatStayOnTheirLine) {
     if (seen.point == trackOf(0, 2)) seen.corner = true;
   });
   BundleProblem problem = problemOf(map, 0);
-  addMotionAlongLines(camera(), map, linesOf(map), sameIndex, problem);
+  addMotionAlongLines(distorted_camera, map, linesOf(map), sameIndex, problem);
   EXPECT_EQ(problem.observations.size(), corridor.size() * tracks_on_edge - 3);
 }
 

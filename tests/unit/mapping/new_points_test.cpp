@@ -12,9 +12,7 @@ namespace {
 using test::EdgeScene;
 using test::Sight;
 
-const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
-
-Pose sideways(double x) { return {Eigen::Quaterniond::Identity(), {x, 0, 0}}; }
+Pose movedSideways(double x) { return {Eigen::Quaterniond::Identity(), {x, 0, 0}}; }
 
 // Adds keyframe by keyframe, as mapping does; returns how many points became map points at the last one.
 int mapAll(const Map& keyframes, const NewPointOptions& options, Map& map, Candidates& candidates) {
@@ -22,7 +20,7 @@ int mapAll(const Map& keyframes, const NewPointOptions& options, Map& map, Candi
   for (const Keyframe& keyframe : keyframes.keyframes) {
     map.keyframes.push_back(keyframe);
     associate(map, candidates);
-    added = addNewPoints(camera, options, map, candidates);
+    added = addNewPoints(test::distorted_camera, options, map, candidates);
   }
   return added;
 }
@@ -37,7 +35,7 @@ struct OnePoint {
       const std::vector<Pose>& poses, const NewPointOptions& options, const Sight& sight = Sight(),
       const std::function<void(Map&)>& spoil = [](Map&) {}) {
     test::Random random(1);
-    Map keyframes = test::keyframesOf(camera, scene, poses, sight, random);
+    Map keyframes = test::keyframesOf(test::distorted_camera, scene, poses, sight, random);
     spoil(keyframes);
     return mapAll(keyframes, options, map, candidates);
   }
@@ -55,7 +53,8 @@ const Eigen::Vector3d upright(0, 1, 0);
 TEST(NewPoints, PointsOfKnownStructureGetTheirDepths) {
   const EdgeScene scene = test::framesOnAWall(5);
   test::Random random(6);
-  const Map keyframes = test::keyframesOf(camera, scene, {sideways(0), sideways(0.25), sideways(0.5)}, Sight(), random);
+  const Map keyframes = test::keyframesOf(test::distorted_camera, scene,
+                                          {movedSideways(0), movedSideways(0.25), movedSideways(0.5)}, Sight(), random);
   Map map;
   Candidates candidates;
   mapAll(keyframes, NewPointOptions(), map, candidates);
@@ -73,7 +72,7 @@ TEST(NewPoints, AssociateAddsViewsToPointsAndTheRestToTheCandidates) {
   OnePoint one = pointOf(upright);
   one.scene.points.push_back(
       {Eigen::Vector3d(-0.3, 0.1, 2), Eigen::Vector3d::UnitX(), 5, 0, false});  // never gets depth
-  one.add({sideways(0), sideways(0.2), sideways(0.4)}, NewPointOptions());
+  one.add({movedSideways(0), movedSideways(0.2), movedSideways(0.4)}, NewPointOptions());
   ASSERT_EQ(one.map.points.size(), 1U);
   EXPECT_EQ(one.map.points.at(0).seen_in, (std::vector<KeyframeId>{1, 2}));
   ASSERT_EQ(one.candidates.size(), 1U);
@@ -81,10 +80,10 @@ TEST(NewPoints, AssociateAddsViewsToPointsAndTheRestToTheCandidates) {
 }
 
 TEST(NewPoints, AnEdgeAlongTheMotionGetsNoDepth) {
-  EXPECT_EQ(pointOf(upright).add({sideways(0), sideways(0.3)}, NewPointOptions()), 1);
-  EXPECT_EQ(pointOf({1, 1, 0}).add({sideways(0), sideways(0.3)}, NewPointOptions()), 1);
-  EXPECT_EQ(pointOf({1, 0, 0}).add({sideways(0), sideways(0.3)}, NewPointOptions()), 0);
-  EXPECT_EQ(pointOf({1, 0, 0}, true).add({sideways(0), sideways(0.3)}, NewPointOptions()), 1) << "a corner";
+  EXPECT_EQ(pointOf(upright).add({movedSideways(0), movedSideways(0.3)}, NewPointOptions()), 1);
+  EXPECT_EQ(pointOf({1, 1, 0}).add({movedSideways(0), movedSideways(0.3)}, NewPointOptions()), 1);
+  EXPECT_EQ(pointOf({1, 0, 0}).add({movedSideways(0), movedSideways(0.3)}, NewPointOptions()), 0);
+  EXPECT_EQ(pointOf({1, 0, 0}, true).add({movedSideways(0), movedSideways(0.3)}, NewPointOptions()), 1) << "a corner";
 }
 
 TEST(NewPoints, TooLittleParallaxGivesNoDepth) {
@@ -92,21 +91,22 @@ TEST(NewPoints, TooLittleParallaxGivesNoDepth) {
   options.largest_depth_sigma = 1e9;
   options.least_parallax_deg = 1.0;
   const double one_degree = 2 * std::tan(M_PI / 180);
-  EXPECT_EQ(pointOf(upright).add({sideways(0), sideways(0.9 * one_degree)}, options), 0);
-  EXPECT_EQ(pointOf(upright).add({sideways(0), sideways(1.1 * one_degree)}, options), 1);
+  EXPECT_EQ(pointOf(upright).add({movedSideways(0), movedSideways(0.9 * one_degree)}, options), 0);
+  EXPECT_EQ(pointOf(upright).add({movedSideways(0), movedSideways(1.1 * one_degree)}, options), 1);
 }
 
 TEST(NewPoints, AnUncertainDepthIsNone) {
   // Half a pixel of 410 over a baseline b at distance 2: sigma / inverse depth = 0.5 / 410 * 2 / b, about.
   NewPointOptions options;
   options.least_parallax_deg = 0;
-  EXPECT_EQ(pointOf(upright).add({sideways(0), sideways(0.012)}, options), 0);
-  EXPECT_EQ(pointOf(upright).add({sideways(0), sideways(0.022)}, options), 1);
+  EXPECT_EQ(pointOf(upright).add({movedSideways(0), movedSideways(0.012)}, options), 0);
+  EXPECT_EQ(pointOf(upright).add({movedSideways(0), movedSideways(0.022)}, options), 1);
 }
 
 TEST(NewPoints, ThePointStaysACandidateUntilItsDepthIsKnown) {
   OnePoint one = pointOf(upright);
-  EXPECT_EQ(one.add({sideways(0), sideways(0.005), sideways(0.01), sideways(0.2)}, NewPointOptions()), 1);
+  EXPECT_EQ(
+      one.add({movedSideways(0), movedSideways(0.005), movedSideways(0.01), movedSideways(0.2)}, NewPointOptions()), 1);
   EXPECT_EQ(one.map.points.at(0).host, 0);
   EXPECT_EQ(one.map.points.at(0).seen_in, (std::vector<KeyframeId>{1, 2, 3}));
 }
@@ -114,12 +114,12 @@ TEST(NewPoints, ThePointStaysACandidateUntilItsDepthIsKnown) {
 TEST(NewPoints, ViewsThatContradictEachOtherGiveNoDepth) {
   NewPointOptions options;
   options.fewest_views = 3;
-  const std::vector<Pose> poses{sideways(0), sideways(0.15), sideways(0.3)};
+  const std::vector<Pose> poses{movedSideways(0), movedSideways(0.15), movedSideways(0.3)};
   EXPECT_EQ(pointOf(upright).add(poses, options), 1);
   const auto spoil = [](Map& map) {
     test::changeEach(map.keyframes[1].observations, [](PointObservation& seen) {
       seen.measurement.pixel.x() += 6;  // twelve of its standard deviations
-      seen.bearing = bearing(camera, seen.measurement.pixel);
+      seen.bearing = bearing(test::distorted_camera, seen.measurement.pixel);
     });
   };
   EXPECT_EQ(pointOf(upright).add(poses, options, Sight(), spoil), 0);
@@ -133,7 +133,8 @@ TEST(NewPoints, WhatSeemsFarNearerThanTheSceneIsNoPoint) {
   test::Random random(1);
   Sight sight;
   sight.least_depth = 0.01;
-  Map keyframes = test::keyframesOf(camera, scene, {sideways(-0.3), sideways(0), sideways(0.01)}, sight, random);
+  Map keyframes = test::keyframesOf(test::distorted_camera, scene,
+                                    {movedSideways(-0.3), movedSideways(0), movedSideways(0.01)}, sight, random);
   ASSERT_EQ(findObservation(keyframes.keyframes[0], 30), nullptr) << "it comes once the scene is known";
   NewPointOptions options;
   for (const double least : {0.0, 0.05}) {
@@ -151,12 +152,12 @@ TEST(NewPoints, ACornerOffTheCrossingOfItsEpipolarLinesIsRefused) {
   NewPointOptions options;
   options.fewest_views = 3;
   options.largest_error = 1e9;
-  const std::vector<Pose> poses{sideways(0), {Eigen::Quaterniond::Identity(), {0.15, 0.1, 0}}, sideways(0.3)};
+  const std::vector<Pose> poses{movedSideways(0), {Eigen::Quaterniond::Identity(), {0.15, 0.1, 0}}, movedSideways(0.3)};
   EXPECT_EQ(pointOf(upright, true).add(poses, options), 1);
   const auto spoil = [](Map& map) {
     test::changeEach(map.keyframes[1].observations, [](PointObservation& seen) {
       seen.measurement.pixel += Eigen::Vector2d(2, 2);
-      seen.bearing = bearing(camera, seen.measurement.pixel);
+      seen.bearing = bearing(test::distorted_camera, seen.measurement.pixel);
     });
   };
   EXPECT_EQ(pointOf(upright, true).add(poses, options, Sight(), spoil), 0);
@@ -167,13 +168,13 @@ TEST(NewPoints, APointBehindTheCamerasIsRefused) {
   const auto swap = [](Map& map) {  // parallax of the wrong sign
     std::swap(map.keyframes[0].world_T_camera, map.keyframes[1].world_T_camera);
   };
-  EXPECT_EQ(pointOf(upright).add({sideways(0), sideways(0.3)}, NewPointOptions(), Sight(), swap), 0);
+  EXPECT_EQ(pointOf(upright).add({movedSideways(0), movedSideways(0.3)}, NewPointOptions(), Sight(), swap), 0);
 }
 
 TEST(NewPoints, WhatIsNoLongerFollowedIsForgotten) {
   OnePoint one = pointOf(upright);
   const auto unseen = [](Map& map) { map.keyframes[2].observations.clear(); };
-  one.add({sideways(0), sideways(0.001), sideways(0.3)}, NewPointOptions(), Sight(), unseen);
+  one.add({movedSideways(0), movedSideways(0.001), movedSideways(0.3)}, NewPointOptions(), Sight(), unseen);
   EXPECT_TRUE(one.map.points.empty());
   EXPECT_TRUE(one.candidates.empty());
 }
@@ -187,10 +188,11 @@ TEST(NewPoints, TheSigmaThatIsKeptIsHonest) {
     test::Random random(seed);
     Sight sight;
     sight.noise = 1;
-    Map keyframes = test::keyframesOf(camera, one.scene, {sideways(0), sideways(0.3)}, sight, random);
+    Map keyframes =
+        test::keyframesOf(test::distorted_camera, one.scene, {movedSideways(0), movedSideways(0.3)}, sight, random);
     // The host bearing counts as exact.
     test::changeEach(keyframes.keyframes[0].observations, [&](PointObservation& host) {
-      host.measurement.pixel = project(camera, one.scene.points[0].position);
+      host.measurement.pixel = project(test::distorted_camera, one.scene.points[0].position);
       host.bearing = one.scene.points[0].position.normalized();
     });
     if (mapAll(keyframes, NewPointOptions(), one.map, one.candidates) == 0) continue;

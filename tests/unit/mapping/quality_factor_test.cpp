@@ -8,19 +8,21 @@
 namespace edgeslam {
 namespace {
 
-Camera camera() { return {CameraModel::pinhole_radial_tangential, 640, 480, 500, 500, 320, 240, {0, 0, 0, 0, 0}}; }
+Camera undistortedCamera() {
+  return {CameraModel::pinhole_radial_tangential, 640, 480, 500, 500, 320, 240, {0, 0, 0, 0, 0}};
+}
 
 // Points of a straight edge of space, `spacing` [px] apart in the image.
 void addEdge(const Eigen::Vector3d& from, const Eigen::Vector3d& to, int chain, std::vector<QualityPoint>& points,
              double spacing = 10) {
-  const Eigen::Vector2d start = project(camera(), from), way = project(camera(), to) - start;
+  const Eigen::Vector2d start = project(undistortedCamera(), from), way = project(undistortedCamera(), to) - start;
   const int count = static_cast<int>(way.norm() / spacing);
   for (int k = 0; k <= count; ++k) {
     QualityPoint point;
     const double share = static_cast<double>(k) / count;
     point.pixel = start + share * way;
     point.normal = Eigen::Vector2d(-way.y(), way.x()).normalized();
-    point.bearing = bearing(camera(), point.pixel);
+    point.bearing = bearing(undistortedCamera(), point.pixel);
     const double inverse_z = (1 - share) / from.z() + share / to.z();  // linear in the image
     point.inverse_depth = inverse_z * point.bearing.z();
     point.chain = chain;

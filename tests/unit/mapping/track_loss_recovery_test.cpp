@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <set>
 
+#include "unit/geometry/degree.h"
 #include "unit/mapping/edge_scene.h"
 
 namespace edgeslam::test {
 namespace {
 
-constexpr double degree = M_PI / 180;
-
-Camera testCamera() {
+Camera lessDistortedCamera() {
   return {CameraModel::pinhole_radial_tangential, 640, 480, 520, 521, 320, 240, {0.05, -0.1, 0.001, -0.0005, 0}};
 }
 
@@ -44,16 +43,16 @@ ThreeViews passBy(const Sight& sight, double scale = 1, const Pose& world = Pose
   here.least_depth = 0.1 * scale;
   views.first.id = 3;
   views.first.world_T_camera = views.world_T_first;
-  views.first.observations = observeAll(testCamera(), views.scene, views.world_T_first, here, random);
+  views.first.observations = observeAll(lessDistortedCamera(), views.scene, views.world_T_first, here, random);
   views.middle.id = 4;
   views.middle.world_T_camera = views.world_T_middle;
-  views.middle.observations = observeAll(testCamera(), views.scene, views.world_T_middle, here, random);
-  views.last.observations = observeAll(testCamera(), views.scene, views.world_T_last, here, random);
+  views.middle.observations = observeAll(lessDistortedCamera(), views.scene, views.world_T_middle, here, random);
+  views.last.observations = observeAll(lessDistortedCamera(), views.scene, views.world_T_last, here, random);
   return views;
 }
 
 RecoveryResult recover(const ThreeViews& views, const RecoveryOptions& options = {}) {
-  return recoverTrackLoss(testCamera(), views.first, views.middle, views.last, options);
+  return recoverTrackLoss(lessDistortedCamera(), views.first, views.middle, views.last, options);
 }
 
 double positionError(const ThreeViews& views, const RecoveryResult& result) {
@@ -116,7 +115,7 @@ TEST(TrackLossRecovery, WrongTracksAreLeftOut) {
   for (std::size_t i = 0; i < views.last.observations.size(); i += 5) {
     PointObservation& observation = views.last.observations[i];
     observation.measurement.pixel += Eigen::Vector2d(uniform(random, 10, 40), uniform(random, -40, -10));
-    observation.bearing = bearing(testCamera(), observation.measurement.pixel);
+    observation.bearing = bearing(lessDistortedCamera(), observation.measurement.pixel);
     wrong.insert(observation.point);
   }
   const RecoveryResult result = recover(views);
@@ -134,7 +133,7 @@ TEST(TrackLossRecovery, WhatContradictsThePoseIsLeftOut) {
   for (PointObservation& observation : views.last.observations) {
     if (observation.measurement.pixel.y() < 300) continue;
     observation.measurement.pixel += Eigen::Vector2d(25, 15);
-    observation.bearing = bearing(testCamera(), observation.measurement.pixel);
+    observation.bearing = bearing(lessDistortedCamera(), observation.measurement.pixel);
     torn.insert(observation.point);
   }
   const RecoveryResult result = recover(views);
@@ -156,7 +155,7 @@ TEST(TrackLossRecovery, WhatContradictsThePoseIsLeftOut) {
     map.points.emplace(point.id, point);
   }
   std::vector<PointObservation> left = views.last.observations;
-  leaveOutContradictions(testCamera(), map, result, RecoveryOptions().largest_miss, left);
+  leaveOutContradictions(lessDistortedCamera(), map, result, RecoveryOptions().largest_miss, left);
   std::size_t torn_left = 0;
   for (const PointObservation& seen : left) torn_left += torn.count(seen.point);
   EXPECT_LT(torn_left, torn.size() / 4);  // what moved along its edge
@@ -207,7 +206,7 @@ TEST(TrackLossRecovery, SameInputSameResult) {
 void lookFrom(ThreeViews& views, const Pose& pose) {
   Random random(11);
   views.world_T_last = pose;
-  views.last.observations = observeAll(testCamera(), views.scene, pose, exact(), random);
+  views.last.observations = observeAll(lessDistortedCamera(), views.scene, pose, exact(), random);
 }
 
 TEST(TrackLossRecovery, TurningAloneIsRefused) {
@@ -224,7 +223,7 @@ TEST(TrackLossRecovery, KeyframesAtOnePlaceGiveNoScale) {
   const Pose turned{rotationExp({0, -4 * degree, 0}), views.world_T_middle.translation + Eigen::Vector3d(1e-4, 0, 0)};
   Random random(11);
   views.first.world_T_camera = turned;
-  views.first.observations = observeAll(testCamera(), views.scene, turned, exact(), random);
+  views.first.observations = observeAll(lessDistortedCamera(), views.scene, turned, exact(), random);
   const RecoveryResult result = recover(views);
   EXPECT_FALSE(result.found);
   EXPECT_NE(result.reason.find("too little parallax between the last two keyframes"), std::string::npos)
@@ -246,7 +245,7 @@ TEST(TrackLossRecovery, TracksThatFitNoCameraAreRefused) {
   Random random(12);
   for (PointObservation& observation : views.last.observations) {
     observation.measurement.pixel = {uniform(random, 10, 630), uniform(random, 10, 470)};
-    observation.bearing = bearing(testCamera(), observation.measurement.pixel);
+    observation.bearing = bearing(lessDistortedCamera(), observation.measurement.pixel);
   }
   const RecoveryResult result = recover(views);
   EXPECT_FALSE(result.found);

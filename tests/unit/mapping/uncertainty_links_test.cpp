@@ -12,8 +12,6 @@
 namespace edgeslam {
 namespace {
 
-const Camera camera = test::Walk::camera();
-
 Map walkedMap(int keyframes, std::uint64_t seed = 5) {
   test::Walk walk(seed, 400);
   for (int i = 0; i < keyframes; ++i) walk.step();
@@ -28,7 +26,9 @@ void forgetObservation(PointId id, Keyframe& keyframe) {
   keyframe.observations = seen;
 }
 
-void renew(Map& map, const MapUncertaintyOptions& options = {}) { renewUncertainty(camera, options, map); }
+void renew(Map& map, const MapUncertaintyOptions& options = {}) {
+  renewUncertainty(test::Walk::camera(), options, map);
+}
 
 // An adjustment takes outliers out of `seen_in` and leaves the observation.
 TEST(UncertaintyLinks, AnOutliersObservationTellsNothing) {
