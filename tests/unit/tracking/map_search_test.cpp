@@ -5,7 +5,9 @@
 
 #include <set>
 
+#include "unit/geometry/degree.h"
 #include "unit/places/made_place.h"
+#include "unit/tracking/textured_plane.h"
 
 namespace edgeslam::test {
 namespace {
@@ -13,8 +15,6 @@ namespace {
 FoundPoints search(const SearchPoints& points, const FrameImages& images, const EdgeMap& edges, const Pose& pose) {
   return findVisiblePoints(points, visiblePoints(placeCamera(), points, pose, {}), images, edges, {});
 }
-
-constexpr double degree = M_PI / 180;
 
 struct Searched {
   std::shared_ptr<const FrameImages> images;  // of the first keyframe
@@ -42,12 +42,6 @@ const Searched& room() {
   return searched;
 }
 
-FrameImages imagesOf(const cv::Mat& grey) {
-  FrameImages images;
-  images.pyramid = buildPyramid(grey, 4);
-  return images;
-}
-
 struct Found {
   std::size_t visible = 0;
   std::size_t found = 0;
@@ -57,10 +51,10 @@ struct Found {
 Found searchFrom(const Pose& truth, const Pose& guess, std::uint64_t seed = 7) {
   const cv::Mat grey = renderRoom(seed, placeCamera(), truth);
   const EdgeMap edges = detectEdges(grey, {});
-  const FrameImages images = imagesOf(grey);
+  const std::shared_ptr<const FrameImages> images = imagesOf(grey);
   Found result;
   result.visible = visiblePoints(placeCamera(), room().points, guess, {}).size();
-  for (const FoundPoint& found : search(room().points, images, edges, guess)) {
+  for (const FoundPoint& found : search(room().points, *images, edges, guess)) {
     const Eigen::Vector3d seen = truth.inverse() * room().points[found.index].position;
     const Eigen::Vector2f apart = found.pixel - project(placeCamera(), seen).cast<float>();
     ++result.found;
@@ -118,14 +112,14 @@ TEST(MapSearch, NormalsTurnWithTheImage) {
 
 TEST(MapSearch, EachPointOnceAndInOrder) {
   const cv::Mat grey = renderRoom(7, placeCamera(), Pose());
-  const auto found = search(room().points, imagesOf(grey), detectEdges(grey, {}), Pose());
+  const auto found = search(room().points, *imagesOf(grey), detectEdges(grey, {}), Pose());
   ASSERT_FALSE(found.empty());
   for (std::size_t i = 1; i < found.size(); ++i) EXPECT_LT(found[i - 1].index, found[i].index);
 }
 
 TEST(MapSearch, AnImageWithoutEdgesHasNone) {
   const cv::Mat grey(240, 320, CV_8U, cv::Scalar(120));
-  EXPECT_TRUE(search(room().points, imagesOf(grey), detectEdges(grey, {}), Pose()).empty());
+  EXPECT_TRUE(search(room().points, *imagesOf(grey), detectEdges(grey, {}), Pose()).empty());
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr double frame_s = 1 / 30.0;
+constexpr double turning_frame_s = 1 / 30.0;
 
 // A camera in keyframe 0 that turns, and may move, by `world_T_now`; what it tracks lies 2 to 4 units away. Of these
 // tracks the first `mapped` are of map points.
@@ -19,7 +19,7 @@ class OrientationOnly : public ::testing::Test {
     view_.initialised = true;
     view_.keyframes = {{0, Pose(), imagesOf(cv::Mat(240, 320, CV_8U, cv::Scalar(90)))}};
     held_.covariance = 1e-8 * Matrix6d::Identity();
-    held_.seconds_ago = frame_s;
+    held_.seconds_ago = turning_frame_s;
     held_.scene_depth = 3;
   }
 
@@ -54,13 +54,13 @@ class OrientationOnly : public ::testing::Test {
   OrientationOnlyOptions options_;
 };
 
-const Pose turned{rotationExp({0.01, 0.15, -0.02}), Eigen::Vector3d::Zero()};
+const Pose turned_camera{rotationExp({0.01, 0.15, -0.02}), Eigen::Vector3d::Zero()};
 
 TEST_F(OrientationOnly, ATurnIsMeasuredAndThePositionStays) {
-  follow(turned, 0);
+  follow(turned_camera, 0);
   const auto found = pose();
   ASSERT_TRUE(found);
-  EXPECT_LT(rotationAngle(found->result.world_T_camera.rotation, turned.rotation), 2e-3);
+  EXPECT_LT(rotationAngle(found->result.world_T_camera.rotation, turned_camera.rotation), 2e-3);
   EXPECT_LT(found->result.world_T_camera.translation.norm(), 0.01);
   EXPECT_EQ(found->result.inlier_count, 0);
   EXPECT_TRUE(found->track_of_observation.empty());
@@ -68,7 +68,7 @@ TEST_F(OrientationOnly, ATurnIsMeasuredAndThePositionStays) {
 
 // What cannot be told from a turn is in the covariance.
 TEST_F(OrientationOnly, AMotionThatIsNotSeenIsInTheCovariance) {
-  const Pose moved{turned.rotation, {0.03, 0.01, -0.02}};
+  const Pose moved{turned_camera.rotation, {0.03, 0.01, -0.02}};
   follow(moved, 0);
   const auto found = pose();
   ASSERT_TRUE(found);
@@ -80,10 +80,10 @@ TEST_F(OrientationOnly, AMotionThatIsNotSeenIsInTheCovariance) {
 }
 
 TEST_F(OrientationOnly, ThePositionIsLessCertainTheLongerItIsHeld) {
-  follow(turned, 0);
+  follow(turned_camera, 0);
   double before = 0;
   for (const int frames : {1, 2, 4}) {
-    held_.seconds_ago = frames * frame_s;
+    held_.seconds_ago = frames * turning_frame_s;
     const auto found = pose();
     ASSERT_TRUE(found) << frames;
     const double variance = found->result.covariance.topLeftCorner<3, 3>().trace();
@@ -96,7 +96,7 @@ TEST_F(OrientationOnly, ThePositionIsLessCertainTheLongerItIsHeld) {
 
 // Few of them leave the map's own pose uncertain; with the rest of the tracks they still tell the position.
 TEST_F(OrientationOnly, TheMapDecidesWhereItCan) {
-  const Pose moved{turned.rotation, {0.06, -0.02, 0.03}};
+  const Pose moved{turned_camera.rotation, {0.06, -0.02, 0.03}};
   follow(moved, 40);
   const auto found = pose();
   ASSERT_TRUE(found);
@@ -107,7 +107,7 @@ TEST_F(OrientationOnly, TheMapDecidesWhereItCan) {
 }
 
 TEST_F(OrientationOnly, WhatDoesNotTurnTogetherIsNoPose) {
-  follow(turned, 0);
+  follow(turned_camera, 0);
   test::Random random(6);
   for (std::size_t i = 0; i < tracks_.size(); i += 2) {
     tracks_[i].pixel += Eigen::Vector2d(test::uniform(random, -60, 60), test::uniform(random, -60, 60)).cast<float>();
@@ -116,7 +116,7 @@ TEST_F(OrientationOnly, WhatDoesNotTurnTogetherIsNoPose) {
 }
 
 TEST_F(OrientationOnly, AMapThatContradictsIsNoPose) {
-  follow(turned, 60);
+  follow(turned_camera, 60);
   for (std::size_t i = 0; i < view_.points.size(); ++i) {
     if (i % 3 != 0) view_.points[i].host_bearing = bearing(camera_, {310 - 5.0 * static_cast<double>(i), 20});
   }
@@ -124,12 +124,12 @@ TEST_F(OrientationOnly, AMapThatContradictsIsNoPose) {
 }
 
 TEST_F(OrientationOnly, TooFewTracksAreNoPose) {
-  follow(turned, 0, options_.fewest_tracks - 1);
+  follow(turned_camera, 0, options_.fewest_tracks - 1);
   EXPECT_FALSE(pose());
 }
 
 TEST_F(OrientationOnly, NothingWhereHardlyAnyOfTheLastFramesTracksAreLeft) {
-  follow(turned, 0);
+  follow(turned_camera, 0);
   held_.followed_share = 1.1 * options_.least_followed_share;
   EXPECT_TRUE(pose());
   held_.followed_share = 0.9 * options_.least_followed_share;
@@ -137,13 +137,13 @@ TEST_F(OrientationOnly, NothingWhereHardlyAnyOfTheLastFramesTracksAreLeft) {
 }
 
 TEST_F(OrientationOnly, NothingAfterAGap) {
-  follow(turned, 0);
+  follow(turned_camera, 0);
   held_.seconds_ago = 1.1 * options_.longest_gap_s;
   EXPECT_FALSE(pose());
 }
 
 TEST_F(OrientationOnly, NothingWhereItIsOff) {
-  follow(turned, 0);
+  follow(turned_camera, 0);
   options_.enabled = false;
   EXPECT_FALSE(pose());
 }

@@ -11,11 +11,8 @@
 namespace edgeslam {
 namespace {
 
-const Camera& camera = walking_camera;
-constexpr std::int64_t interval_ns = walking_interval_ns;
-
 Pose path(int i) { return walk(i); }
-cv::Mat black() { return cv::Mat(camera.height, camera.width, CV_8U, cv::Scalar(0)); }
+cv::Mat black() { return cv::Mat(walking_camera.height, walking_camera.width, CV_8U, cv::Scalar(0)); }
 
 // What a frame came to, and what mapping is told of it.
 struct Outcome : FrameResult {
@@ -30,7 +27,7 @@ Outcome track(Tracker& tracker, std::int64_t index, std::int64_t time_ns, const 
   return outcome;
 }
 
-Outcome trackFrame(Tracker& tracker, int i) { return track(tracker, i, i * interval_ns, imageAt(i)); }
+Outcome trackFrame(Tracker& tracker, int i) { return track(tracker, i, i * walking_interval_ns, imageAt(i)); }
 
 TrackedFrame keepLostFrame(Tracker& tracker) {
   TrackedFrame kept;
@@ -42,7 +39,7 @@ void adopt(Tracker& tracker, MapView view) { tracker.adopt(view); }
 
 // A tracker that knows the plane and has followed it up to frame `last`.
 struct Tracked {
-  Tracker tracker{camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions()};
+  Tracker tracker{walking_camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions()};
   MapView view;
   Outcome outcome;  // of frame `last`
 
@@ -72,7 +69,7 @@ double distance(const Pose& a, const Pose& b) { return (a.translation - b.transl
 double angle(const Pose& a, const Pose& b) { return rotationAngle(a.rotation, b.rotation); }
 
 TEST(Tracker, TheFirstFrameStartsAMap) {
-  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
+  Tracker tracker(walking_camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
   const Outcome outcome = trackFrame(tracker, 0);
   EXPECT_EQ(outcome.state, TrackingState::initialising);
   EXPECT_NE(outcome.reason, "");
@@ -99,12 +96,12 @@ TEST(Tracker, TheFirstFrameStartsAMap) {
 // Past the plane so fast that its first points leave the image: a younger frame is kept beside the first one, and
 // tracking goes on from it.
 TEST(Tracker, AStartWhosePointsFadeGoesOnFromASpareFrame) {
-  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
+  Tracker tracker(walking_camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
   std::vector<Outcome> outcomes;
   std::int64_t spare = -1;
   for (int i = 0; i < 70; ++i) {
-    const cv::Mat image = wall().render(camera, {Eigen::Quaterniond::Identity(), {0.03 * i, 0.004 * i, 0}});
-    outcomes.push_back(track(tracker, i, i * interval_ns, image));
+    const cv::Mat image = wall().render(walking_camera, {Eigen::Quaterniond::Identity(), {0.03 * i, 0.004 * i, 0}});
+    outcomes.push_back(track(tracker, i, i * walking_interval_ns, image));
     const Outcome& now = outcomes.back();
     ASSERT_EQ(now.state, TrackingState::initialising) << i;
     ASSERT_TRUE(now.tells_mapping) << i;
@@ -131,13 +128,13 @@ TEST(Tracker, AStartWhosePointsFadeGoesOnFromASpareFrame) {
 TEST(Tracker, WhileMappingIsBusyItIsToldNothingAndTrackingGoesOn) {
   Tracked run(3);
   for (int i = 4; i < 40; ++i) {
-    const Outcome outcome = track(run.tracker, i, i * interval_ns, imageAt(i), /*mapping_busy=*/true);
+    const Outcome outcome = track(run.tracker, i, i * walking_interval_ns, imageAt(i), /*mapping_busy=*/true);
     ASSERT_EQ(outcome.state, TrackingState::tracking) << i << ": " << outcome.reason;
     ASSERT_FALSE(outcome.tells_mapping) << i;
   }
   EXPECT_TRUE(trackFrame(run.tracker, 40).tells_mapping) << "the keyframe that was due long ago";
 
-  Tracker unstarted(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
+  Tracker unstarted(walking_camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
   const Outcome outcome = track(unstarted, 0, 0, imageAt(0), /*mapping_busy=*/true);
   EXPECT_FALSE(outcome.tells_mapping);
   EXPECT_EQ(outcome.reason, "mapping is behind");
@@ -145,7 +142,7 @@ TEST(Tracker, WhileMappingIsBusyItIsToldNothingAndTrackingGoesOn) {
 }
 
 TEST(Tracker, NothingToSeeStartsNoMap) {
-  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
+  Tracker tracker(walking_camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
   const Outcome outcome = track(tracker, 0, 0, black());
   EXPECT_EQ(outcome.state, TrackingState::initialising);
   EXPECT_NE(outcome.reason.find("too few points"), std::string::npos) << outcome.reason;
@@ -154,9 +151,9 @@ TEST(Tracker, NothingToSeeStartsNoMap) {
 }
 
 TEST(Tracker, AnotherSceneBeforeTheMapStandsStartsAnew) {
-  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
+  Tracker tracker(walking_camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions());
   const MapView former = knownMap(trackFrame(tracker, 0).for_mapping);
-  const Outcome outcome = track(tracker, 5, 5 * interval_ns, elsewhere());
+  const Outcome outcome = track(tracker, 5, 5 * walking_interval_ns, elsewhere());
   EXPECT_EQ(outcome.state, TrackingState::initialising);
   ASSERT_TRUE(outcome.tells_mapping) << outcome.reason;
   EXPECT_EQ(outcome.for_mapping.keyframe, 0);
@@ -239,7 +236,7 @@ TEST_P(TrackerMovedWith, ANewerViewMovesThePosesWithTheWorld) {
 
 TEST(Tracker, ABlackFrameIsPredictedAndTrackingGoesOnAfterIt) {
   Tracked run(4);
-  const Outcome dark = track(run.tracker, 5, 5 * interval_ns, black());
+  const Outcome dark = track(run.tracker, 5, 5 * walking_interval_ns, black());
   EXPECT_EQ(dark.state, TrackingState::predicted);
   EXPECT_NE(dark.reason, "");
   EXPECT_FALSE(dark.tells_mapping);
@@ -254,7 +251,7 @@ TEST(Tracker, ABlackFrameIsPredictedAndTrackingGoesOnAfterIt) {
 TEST(Tracker, BlackForLongIsNeverTaken) {
   Tracked run(2);
   for (int i = 3; i < 40; ++i) {  // longer than the blur gate rejects frames in a row
-    const Outcome outcome = track(run.tracker, i, i * interval_ns, black());
+    const Outcome outcome = track(run.tracker, i, i * walking_interval_ns, black());
     ASSERT_FALSE(isGoodPose(outcome.state)) << i;
     ASSERT_FALSE(outcome.tells_mapping) << i;
   }
@@ -266,7 +263,7 @@ TEST(Tracker, ThePredictedPosesDoubtGrowsWithTheTimeSince) {
   double farthest = 0;
   for (const int later : {1, 2, 3, 10, 100}) {
     FrameResult outcome;
-    run.tracker.skip(4 + later, (4 + later) * interval_ns, "unreadable", outcome);
+    run.tracker.skip(4 + later, (4 + later) * walking_interval_ns, "unreadable", outcome);
     EXPECT_EQ(outcome.state, TrackingState::predicted);
     EXPECT_EQ(outcome.reason, "unreadable");
     EXPECT_GT((outcome.covariance - before).diagonal().minCoeff(), 0) << later;
@@ -279,7 +276,7 @@ TEST(Tracker, ThePredictedPosesDoubtGrowsWithTheTimeSince) {
 
 TEST(Tracker, AnotherPlaceIsLostAndGivesNoKeyframeOfIt) {
   Tracked run(3);
-  const Outcome outcome = track(run.tracker, 4, 4 * interval_ns, elsewhere());
+  const Outcome outcome = track(run.tracker, 4, 4 * walking_interval_ns, elsewhere());
   EXPECT_EQ(outcome.state, TrackingState::lost);
   EXPECT_NE(outcome.reason, "");
   EXPECT_GT(outcome.covariance(0, 0), run.outcome.covariance(0, 0));
@@ -290,7 +287,7 @@ TEST(Tracker, AnotherPlaceIsLostAndGivesNoKeyframeOfIt) {
   EXPECT_GT(kept.keyframe, run.tracker.view().keyframes.back().id);
   ASSERT_TRUE(kept.images);
   EXPECT_EQ(kept.images->frame_index, 4);
-  ASSERT_EQ(track(run.tracker, 5, 5 * interval_ns, elsewhere()).state, TrackingState::lost);
+  ASSERT_EQ(track(run.tracker, 5, 5 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
   EXPECT_EQ(keepLostFrame(run.tracker).keyframe, kept.keyframe + 1) << "no number twice";
   const Outcome back = trackFrame(run.tracker, 6);
   EXPECT_EQ(back.state, TrackingState::tracking) << back.reason;
@@ -305,10 +302,11 @@ TEST(Tracker, AnUncertainPoseIsNotBelieved) {
     options.location.orientation_only.enabled = orientation_only;
     options.location.acceptance.least_points_share = 0;
     options.location.acceptance.largest_deviation = largest_deviation;
-    Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), options);
+    Tracker tracker(walking_camera, EdgeOptions(), PointChoiceOptions(), options);
     MapView view = knownMap(trackFrame(tracker, 0).for_mapping);
     const auto is_far_off = [](const ViewPoint& point) {
-      return (point.source_measurement.pixel - Eigen::Vector2d(camera.width / 2.0, camera.height / 2.0)).norm() > 30;
+      return (point.source_measurement.pixel - Eigen::Vector2d(walking_camera.width / 2.0, walking_camera.height / 2.0))
+                 .norm() > 30;
     };
     view.points.erase(std::remove_if(view.points.begin(), view.points.end(), is_far_off), view.points.end());
     EXPECT_GT(view.points.size(), 6U);
@@ -332,8 +330,8 @@ std::vector<FoundAgain> foundIn(const MapView& view, const Pose& pose, const Pos
   std::vector<FoundAgain> found;
   for (const ViewPoint& point : view.points) {
     const Eigen::Vector3d on_plane = world_T_plane.inverse() * worldPosition(view, point);
-    const Eigen::Vector2d pixel = project(camera, pose.inverse() * on_plane);
-    if (!insideImage(camera, pixel, 20)) continue;
+    const Eigen::Vector2d pixel = project(walking_camera, pose.inverse() * on_plane);
+    if (!insideImage(walking_camera, pixel, 20)) continue;
     found.push_back({point.id, point.source_measurement, point.corner});
     found.back().measurement.pixel = pixel;
   }
@@ -342,7 +340,7 @@ std::vector<FoundAgain> foundIn(const MapView& view, const Pose& pose, const Pos
 
 TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
   Tracked run(2);
-  ASSERT_EQ(track(run.tracker, 3, 3 * interval_ns, elsewhere()).state, TrackingState::lost);
+  ASSERT_EQ(track(run.tracker, 3, 3 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
   // So long after, the last frame's points are not looked for any more.
   const std::int64_t later_ns = 900'000'000;
   const Outcome lost = track(run.tracker, 90, later_ns, imageAt(8));
@@ -354,7 +352,7 @@ TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
   EXPECT_EQ(kept.images->frame_index, 90);
   EXPECT_FALSE(run.tracker.keptEdges()->points.empty());
   // Others look for it for a while.
-  EXPECT_EQ(track(run.tracker, 91, later_ns + interval_ns / 2, elsewhere()).state, TrackingState::lost);
+  EXPECT_EQ(track(run.tracker, 91, later_ns + walking_interval_ns / 2, elsewhere()).state, TrackingState::lost);
 
   const Pose new_T_old{rotationExp({0.1, 0.9, -0.2}), {-4, 2, 1}};
   MapView view = moved(run.view, new_T_old);
@@ -365,7 +363,7 @@ TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
   EXPECT_EQ(run.tracker.tracks().size(), found.size());
   EXPECT_EQ(run.tracker.view().version, version);
   for (int i = 9; i <= 11; ++i) {
-    const Outcome outcome = track(run.tracker, 83 + i, later_ns + (i - 8) * interval_ns, imageAt(i));
+    const Outcome outcome = track(run.tracker, 83 + i, later_ns + (i - 8) * walking_interval_ns, imageAt(i));
     ASSERT_EQ(outcome.state, TrackingState::tracking) << outcome.reason;
     EXPECT_FALSE(run.tracker.hasLostFrame());
     EXPECT_LT(distance(outcome.world_T_camera, new_T_old * path(i)), 0.001) << i;
@@ -379,7 +377,7 @@ TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
 // Of the frame at `i` only a band in the middle, a fifth of its height; above and below it another place.
 cv::Mat mostlyElsewhere(int i) {
   cv::Mat image = elsewhere().clone();
-  const cv::Rect band(0, 2 * camera.height / 5, camera.width, camera.height / 5);
+  const cv::Rect band(0, 2 * walking_camera.height / 5, walking_camera.width, walking_camera.height / 5);
   imageAt(i)(band).copyTo(image(band));
   return image;
 }
@@ -388,13 +386,13 @@ cv::Mat mostlyElsewhere(int i) {
 // these may agree with a wrong pose, on which the map would grow.
 TEST(Tracker, ResumedItBelievesNoPoseThatFewOfThePointsFoundAgreeWith) {
   Tracked run(2);
-  ASSERT_EQ(track(run.tracker, 3, 3 * interval_ns, elsewhere()).state, TrackingState::lost);
+  ASSERT_EQ(track(run.tracker, 3, 3 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
   const std::int64_t later_ns = 900'000'000;
   ASSERT_EQ(track(run.tracker, 90, later_ns, imageAt(8)).state, TrackingState::lost);
   keepLostFrame(run.tracker);
   MapView view = moved(run.view, Pose());
   run.tracker.resume(view, path(8), 1e-6 * Matrix6d::Identity(), foundIn(view, path(8), Pose()));
-  const Outcome few = track(run.tracker, 91, later_ns + interval_ns, mostlyElsewhere(9));
+  const Outcome few = track(run.tracker, 91, later_ns + walking_interval_ns, mostlyElsewhere(9));
   EXPECT_TRUE(few.state == TrackingState::lost || few.position_is_held) << few.reason;
 }
 
@@ -412,7 +410,7 @@ MapView ofAnotherWorld(MapView view, int world) {
 TEST(Tracker, LostForASecondItBeginsAWorldBesideTheOldOne) {
   Tracked run(2);
   EXPECT_EQ(run.outcome.world, 0);
-  const std::int64_t lost_ns = 3 * interval_ns;
+  const std::int64_t lost_ns = 3 * walking_interval_ns;
   const Outcome lost = track(run.tracker, 3, lost_ns, elsewhere());
   EXPECT_EQ(lost.state, TrackingState::lost);
   EXPECT_EQ(lost.world, -1);
@@ -443,7 +441,7 @@ TEST(Tracker, LostForASecondItBeginsAWorldBesideTheOldOne) {
 TEST(Tracker, WithoutNewWorldsItStaysLost) {
   TrackerOptions options;
   options.worlds_enabled = false;
-  Tracker tracker(camera, EdgeOptions(), PointChoiceOptions(), options);
+  Tracker tracker(walking_camera, EdgeOptions(), PointChoiceOptions(), options);
   MapView view = knownMap(trackFrame(tracker, 0).for_mapping);
   tracker.adopt(view);
   ASSERT_EQ(trackFrame(tracker, 1).state, TrackingState::tracking);

@@ -5,32 +5,28 @@
 
 #include <cmath>
 
+#include "unit/tracking/circling_robot.h"
+
 namespace edgeslam {
 namespace {
 
-const Pose body_T_camera{Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), {0.1, 0.02, 0.3}};
-constexpr double frame_s = 0.05, metres_a_unit = 2, turn_rad_s = 0.4;
+constexpr double turn_rad_s = 0.4;
 
-// A robot that drives a circle.
-Pose circle(double time_s, double turns = 1) {
-  const double angle = turns * turn_rad_s * time_s;
-  return {rotationExp(angle * Eigen::Vector3d::UnitZ()), {std::sin(angle), 1 - std::cos(angle), 0}};
-}
-
-std::int64_t nanoseconds(double time_s) { return std::llround(time_s * 1e9); }
+// Where the robot is, or what its wheels tell that turn `turns` times as much.
+Pose fastCircle(double time_s, double turns = 1) { return onCircle(turns * turn_rad_s * time_s); }
 
 class UnseenMotionOfRobot : public testing::Test {
  protected:
   UnseenMotionOfRobot() {
-    unit_.imu_T_camera = body_T_camera;  // it sits where the body's origin is
+    unit_.imu_T_camera = robot_T_camera;  // it sits where the body's origin is
     view_.inertia.emplace();
     view_.inertia->rate_bias_sigma = 1e-4;
-    view_.wheels = {true, metres_a_unit, 0.02};
+    view_.wheels = {true, robot_metres_a_unit, 0.02};
   }
 
   // The camera is located in frames until the time; the wheels turn by so many times as much as the robot.
   UnseenMotion driven(bool with_unit, double until_s, double wheel_turns) {
-    UnseenMotion motion(with_unit ? std::optional(unit_) : std::nullopt, {}, WheelOptions{body_T_camera, false}, {});
+    UnseenMotion motion(with_unit ? std::optional(unit_) : std::nullopt, {}, WheelOptions{robot_T_camera, false}, {});
     FollowedFrame before;
     for (double time_s = 0; time_s < until_s + 3; time_s += 0.005) {
       InertialSample sample;
@@ -40,10 +36,10 @@ class UnseenMotionOfRobot : public testing::Test {
     }
     for (double time_s = 0; time_s < until_s + 3; time_s += 0.02) {
       const double blind_s = std::max(0.0, time_s - until_s);
-      const Pose body = circle(std::min(time_s, until_s)) * circle(blind_s, wheel_turns);
+      const Pose body = fastCircle(std::min(time_s, until_s)) * fastCircle(blind_s, wheel_turns);
       motion.add({nanoseconds(time_s) / 1000, body});
     }
-    for (double time_s = 0; time_s < until_s + 1e-9; time_s += frame_s) {
+    for (double time_s = 0; time_s < until_s + 1e-9; time_s += robot_frame_s) {
       last_ = frameAt(time_s);
       last_.wheels = motion.wheelsAt(nanoseconds(time_s));
       if (before.isThere()) motion.observe(before, last_, 1e-3, view_);
@@ -56,8 +52,8 @@ class UnseenMotionOfRobot : public testing::Test {
     auto images = std::make_shared<FrameImages>();
     images->time_ns = nanoseconds(time_s);
     frame.images = images;
-    const Pose camera = circle(time_s) * body_T_camera;
-    frame.world_T_camera = {camera.rotation, camera.translation / metres_a_unit};
+    const Pose camera = fastCircle(time_s) * robot_T_camera;
+    frame.world_T_camera = {camera.rotation, camera.translation / robot_metres_a_unit};
     frame.covariance.diagonal() << 1e-6, 1e-6, 1e-6, 1e-7, 1e-7, 1e-7;
     return frame;
   }

@@ -21,37 +21,37 @@ MapView rowOfKeyframes(int count) {
   return view;
 }
 
-Pose at(double x, double turn_deg = 0) { return {rotationExp({0, radians(turn_deg), 0}), {x, 0, 0}}; }
+Pose poseAt(double x, double turn_deg = 0) { return {rotationExp({0, radians(turn_deg), 0}), {x, 0, 0}}; }
 
 TEST(NearestKeyframe, IsTheNearestFromAnyOtherOnceTheCameraIsThere) {
   const MapView view = rowOfKeyframes(10);
   for (KeyframeId current = 0; current < 20; current += 2) {
-    for (int i = 0; i < 10; ++i) EXPECT_EQ(nearestKeyframe(view, at(i), 5, current), 2 * i);
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(nearestKeyframe(view, poseAt(i), 5, current), 2 * i);
   }
 }
 
 TEST(NearestKeyframe, StaysWhereTwoAreAboutAsNear) {
   const MapView view = rowOfKeyframes(10);
-  EXPECT_EQ(nearestKeyframe(view, at(4.5), 5, 8), 8);
-  EXPECT_EQ(nearestKeyframe(view, at(4.5), 5, 10), 10);
-  EXPECT_EQ(nearestKeyframe(view, at(4.55), 5, 8), 8);
-  EXPECT_EQ(nearestKeyframe(view, at(4.8), 5, 8), 10);
+  EXPECT_EQ(nearestKeyframe(view, poseAt(4.5), 5, 8), 8);
+  EXPECT_EQ(nearestKeyframe(view, poseAt(4.5), 5, 10), 10);
+  EXPECT_EQ(nearestKeyframe(view, poseAt(4.55), 5, 8), 8);
+  EXPECT_EQ(nearestKeyframe(view, poseAt(4.8), 5, 8), 10);
 }
 
 TEST(NearestKeyframe, LooksTheSameWay) {
   MapView view = rowOfKeyframes(2);
   ViewKeyframe turned;
   turned.id = 7;
-  turned.world_T_camera = at(0.5, 90);
+  turned.world_T_camera = poseAt(0.5, 90);
   view.keyframes.push_back(turned);
-  EXPECT_EQ(nearestKeyframe(view, at(0, 80), 5, 0), 7);
-  EXPECT_EQ(nearestKeyframe(view, at(0.5, 10), 5, 2), 2);
+  EXPECT_EQ(nearestKeyframe(view, poseAt(0, 80), 5, 0), 7);
+  EXPECT_EQ(nearestKeyframe(view, poseAt(0.5, 10), 5, 2), 2);
 }
 
 TEST(NearestKeyframe, OneThatIsNotInTheViewIsLeft) {
-  EXPECT_EQ(nearestKeyframe(rowOfKeyframes(5), at(3), 5, -1), 6);
-  EXPECT_EQ(nearestKeyframe(rowOfKeyframes(5), at(3), 5, 99), 6);
-  EXPECT_EQ(nearestKeyframe(MapView(), at(3), 5, 4), 4) << "there is none";
+  EXPECT_EQ(nearestKeyframe(rowOfKeyframes(5), poseAt(3), 5, -1), 6);
+  EXPECT_EQ(nearestKeyframe(rowOfKeyframes(5), poseAt(3), 5, 99), 6);
+  EXPECT_EQ(nearestKeyframe(MapView(), poseAt(3), 5, 4), 4) << "there is none";
 }
 
 }  // namespace
