@@ -10,7 +10,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr int covered_from = 90, covered_for = 24, frame_count = 170;
+constexpr int covered_from = 90, covered_for = 24, found_again_frames = 170;
 
 struct CoveredRun {
   RunResult result;
@@ -20,14 +20,14 @@ struct CoveredRun {
 CoveredRun makeRun() {
   SimulationOptions options;
   options.scene = SceneKind::panels_textured;
-  options.frames = frame_count;
+  options.frames = found_again_frames;
   options.width = 320;
   options.height = 240;
   options.covered = {{covered_from, covered_for}};
   const SimulatedSequence sequence = makeSequence(options);
-  LockstepRun lockstep(sequence.camera, Settings(), frame_count, 0);
+  LockstepRun lockstep(sequence.camera, Settings(), found_again_frames, 0);
   CoveredRun run;
-  for (int i = 0; i < frame_count; ++i) {
+  for (int i = 0; i < found_again_frames; ++i) {
     const SimulatedFrame frame = sequence.frame(i);
     lockstep.process(i, frame.time_ns, frame.grey);
     run.truth.push_back({frame.time_ns, frame.world_T_camera});
@@ -53,7 +53,7 @@ TEST(FoundAgain, AfterACoveredLensPosesGoOnInTheSameWorld) {
     if (frame.index >= covered_from + covered_for + 10) after_good += isGoodPose(frame.state);
   }
   EXPECT_EQ(covered_good, 0) << "a covered lens sees nothing";
-  const int after = frame_count - covered_from - covered_for - 10;
+  const int after = found_again_frames - covered_from - covered_for - 10;
   EXPECT_GE(after_good, after * 9 / 10);
   const AbsoluteError error = absoluteError(run.estimate, run.truth, Alignment::similarity);
   EXPECT_LT(error.translation.max, 0.05) << "one world before and after [m]";

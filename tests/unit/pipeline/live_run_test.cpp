@@ -17,7 +17,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr int frame_count = 70;
+constexpr int live_frames = 70;
 
 struct MadeFrames {
   SimulatedSequence sequence;
@@ -29,12 +29,12 @@ const MadeFrames& made() {
   static const MadeFrames frames = [] {
     SimulationOptions options;
     options.scene = SceneKind::panels_textured;
-    options.frames = frame_count;
+    options.frames = live_frames;
     options.width = 320;
     options.height = 240;
     options.covered = {{45, 6}};
     MadeFrames made{makeSequence(options), {}};
-    for (int i = 0; i < frame_count; ++i) made.images.push_back(made.sequence.frame(i).grey);
+    for (int i = 0; i < live_frames; ++i) made.images.push_back(made.sequence.frame(i).grey);
     return made;
   }();
   return frames;
@@ -99,12 +99,12 @@ void handFrame(LiveRun& live, int i, const std::string& problem = "") {
   slot.index = i;
   slot.time_ns = made().sequence.time(i);
   slot.problem = problem;
-  made().images[static_cast<std::size_t>(i % frame_count)].copyTo(slot.grey);
+  made().images[static_cast<std::size_t>(i % live_frames)].copyTo(slot.grey);
   live.handOver();
 }
 
 // `interval` 0: each frame waits until the one before is done with.
-LiveResult runLive(DecisionSink* sink, milliseconds interval, int frames = frame_count, bool settle = true,
+LiveResult runLive(DecisionSink* sink, milliseconds interval, int frames = live_frames, bool settle = true,
                    int unreadable = -1) {
   RunRecord record(made().sequence.camera);
   LiveRun live(made().sequence.camera, Settings(), LiveOptions(), recordingTo(record), sink);
@@ -150,7 +150,7 @@ void expectSameRun(const RunResult& a, const RunResult& b) {
 TEST(LiveRun, WhatItDecidedRepeatsItToTheLastBit) {
   for (const int interval_ms : {12, 25, 4}) {  // the last is faster than tracking
     KeptDecisions kept;
-    const LiveResult live = runLive(&kept, milliseconds(interval_ms), frame_count, true, /*unreadable=*/30);
+    const LiveResult live = runLive(&kept, milliseconds(interval_ms), live_frames, true, /*unreadable=*/30);
     EXPECT_EQ(live.run.frames.size(), kept.frames.size());
     expectSameRun(live.run, repeat(kept));
   }
@@ -170,7 +170,7 @@ TEST(LiveRun, EveryFrameIsProcessedOrToldAsPassedOver) {
   RunRecord record(made().sequence.camera);
   LiveRun run(made().sequence.camera, Settings(), LiveOptions(), recordingTo(record), &kept);
   run.start();
-  for (int i = 0; i < frame_count; ++i) handFrame(run, i);  // all at once
+  for (int i = 0; i < live_frames; ++i) handFrame(run, i);  // all at once
   run.stop(/*settle=*/true);
   const LiveCounts counts = run.counts();
   std::vector<std::int64_t> all = kept.frames;
@@ -178,10 +178,10 @@ TEST(LiveRun, EveryFrameIsProcessedOrToldAsPassedOver) {
   std::sort(all.begin(), all.end());
   ASSERT_FALSE(all.empty());
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], static_cast<std::int64_t>(i));
-  EXPECT_EQ(all.back(), frame_count - 1) << "the newest frame wins";
+  EXPECT_EQ(all.back(), live_frames - 1) << "the newest frame wins";
   EXPECT_GT(kept.passed_over.size(), 5U);
-  EXPECT_EQ(counts.captured, frame_count);
-  EXPECT_EQ(counts.processed + counts.passed_over, frame_count);
+  EXPECT_EQ(counts.captured, live_frames);
+  EXPECT_EQ(counts.processed + counts.passed_over, live_frames);
   EXPECT_EQ(counts.not_published, 0);
   EXPECT_EQ(static_cast<std::int64_t>(record.finish(run.mapper()).frames.size()), counts.processed);
 }
@@ -202,7 +202,7 @@ TEST(LiveRun, AMappingFarBehindIsToldNothingAndNoFrameIsDroppedForIt) {
   LiveRun live(made().sequence.camera, Settings(), LiveOptions(), recordingTo(record), &kept);
   live.start();
   // As fast as tracking goes: what starts a map takes longer than a few frames.
-  for (int i = 0; i < frame_count; ++i) {
+  for (int i = 0; i < live_frames; ++i) {
     handFrame(live, i);
     while (live.counts().processed + live.counts().passed_over <= i) std::this_thread::yield();
   }
@@ -211,7 +211,7 @@ TEST(LiveRun, AMappingFarBehindIsToldNothingAndNoFrameIsDroppedForIt) {
   EXPECT_GT(counts.mapping_behind, 0);
   EXPECT_EQ(static_cast<std::int64_t>(kept.decisions.mapping_busy.size()), counts.mapping_behind);
   EXPECT_EQ(counts.passed_over, 0);
-  EXPECT_EQ(counts.processed, frame_count);
+  EXPECT_EQ(counts.processed, live_frames);
   expectSameRun(record.finish(live.mapper()), repeat(kept));
 }
 
@@ -220,13 +220,13 @@ TEST(LiveRun, ACameraThatBurstsAndPausesGivesARunThatRepeats) {
   RunRecord record(made().sequence.camera);
   LiveRun live(made().sequence.camera, Settings(), LiveOptions(), recordingTo(record), &kept);
   live.start();
-  for (int i = 0; i < frame_count; ++i) {
+  for (int i = 0; i < live_frames; ++i) {
     handFrame(live, i);
     std::this_thread::sleep_for(i % 20 == 19 ? milliseconds(150) : i % 20 > 14 ? milliseconds(0) : milliseconds(20));
   }
   live.stop(/*settle=*/true);
   const LiveCounts counts = live.counts();
-  EXPECT_EQ(counts.processed + counts.passed_over, frame_count);
+  EXPECT_EQ(counts.processed + counts.passed_over, live_frames);
   EXPECT_GT(counts.passed_over, 0) << "five frames at once";
   expectSameRun(record.finish(live.mapper()), repeat(kept));
 }

@@ -11,7 +11,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr int frame_count = 60;
+constexpr int lockstep_frames = 60;
 
 struct Recording {
   SimulatedSequence sequence;
@@ -23,11 +23,11 @@ const Recording& recording() {
   static const Recording made = [] {
     SimulationOptions options;
     options.scene = SceneKind::panels_textured;
-    options.frames = frame_count;
+    options.frames = lockstep_frames;
     options.width = 320;
     options.height = 240;
     Recording recording{makeSequence(options), {}};
-    for (int i = 0; i < frame_count; ++i) recording.images.push_back(recording.sequence.frame(i).grey);
+    for (int i = 0; i < lockstep_frames; ++i) recording.images.push_back(recording.sequence.frame(i).grey);
     return recording;
   }();
   return made;
@@ -35,7 +35,7 @@ const Recording& recording() {
 
 // `unreadable`: frames that cannot be read; `live`: the records as they were given out, where asked for.
 RunResult run(const Settings& settings, const std::set<int>& unreadable = {}, std::vector<FrameRecord>* live = nullptr,
-              int frames = frame_count) {
+              int frames = lockstep_frames) {
   const Recording& made = recording();
   LockstepRun lockstep(made.sequence.camera, settings, frames, 4);
   for (int i = 0; i < frames; ++i) {
@@ -106,8 +106,8 @@ TEST(LockstepRun, TheSameFramesGiveTheSameRunToTheLastBit) {
 // While the camera has not been found yet there is no frame with a pose to draw.
 TEST(LockstepRun, FramesAreDrawnAlsoBeforeTheCameraIsFoundInASavedMap) {
   const Recording& made = recording();
-  LockstepRun first(made.sequence.camera, Settings(), frame_count, 0);
-  for (int i = 0; i < frame_count; ++i) {
+  LockstepRun first(made.sequence.camera, Settings(), lockstep_frames, 0);
+  for (int i = 0; i < lockstep_frames; ++i) {
     first.process(i, made.sequence.time(i), made.images[static_cast<std::size_t>(i)]);
   }
   first.settle();
@@ -131,8 +131,8 @@ TEST(LockstepRun, FramesAreDrawnAlsoBeforeTheCameraIsFoundInASavedMap) {
 // Localisation only: poses as from mapping, and the map is the same bytes.
 TEST(LockstepRun, AFrozenMapIsLocalisedInAndStaysAsItIs) {
   const Recording& made = recording();
-  LockstepRun first(made.sequence.camera, Settings(), frame_count, 0);
-  for (int i = 0; i < frame_count; ++i) {
+  LockstepRun first(made.sequence.camera, Settings(), lockstep_frames, 0);
+  for (int i = 0; i < lockstep_frames; ++i) {
     first.process(i, made.sequence.time(i), made.images[static_cast<std::size_t>(i)]);
   }
   first.settle();
@@ -143,10 +143,10 @@ TEST(LockstepRun, AFrozenMapIsLocalisedInAndStaysAsItIs) {
   settings.tracking.map_is_frozen = true;
   std::vector<RunResult> results;
   for (int again = 0; again < 2; ++again) {
-    LockstepRun run(made.sequence.camera, settings, frame_count, 0);
+    LockstepRun run(made.sequence.camera, settings, lockstep_frames, 0);
     run.goOnWith(first.map());
-    for (int i = 0; i < frame_count; ++i) {
-      const std::int64_t index = frame_count - 1 - i;  // backwards: it is another run
+    for (int i = 0; i < lockstep_frames; ++i) {
+      const std::int64_t index = lockstep_frames - 1 - i;  // backwards: it is another run
       run.process(i, made.sequence.time(i), made.images[static_cast<std::size_t>(index)]);
     }
     run.settle();
@@ -161,15 +161,15 @@ TEST(LockstepRun, AFrozenMapIsLocalisedInAndStaysAsItIs) {
     tracked += isGoodPose(a.state) ? 1 : 0;
     EXPECT_FALSE(a.is_keyframe);
   }
-  EXPECT_GE(tracked, frame_count - 10);
+  EXPECT_GE(tracked, lockstep_frames - 10);
   EXPECT_TRUE(results[0].keyframes.empty()) << "none is of this run";
 }
 
 // Where nothing of it shows, poses are predicted and said to be so for a while, and never good.
 TEST(LockstepRun, WhereAFrozenMapDoesNotShowPosesArePredictedThenLost) {
   const Recording& made = recording();
-  LockstepRun first(made.sequence.camera, Settings(), frame_count, 0);
-  for (int i = 0; i < frame_count; ++i) {
+  LockstepRun first(made.sequence.camera, Settings(), lockstep_frames, 0);
+  for (int i = 0; i < lockstep_frames; ++i) {
     first.process(i, made.sequence.time(i), made.images[static_cast<std::size_t>(i)]);
   }
   first.settle();
@@ -210,7 +210,7 @@ TEST(LockstepRun, WhereAFrozenMapDoesNotShowPosesArePredictedThenLost) {
 TEST(LockstepRun, WhatARunLeavesFitsTogether) {
   std::vector<FrameRecord> live;
   const RunResult result = run(Settings(), {}, &live);
-  ASSERT_EQ(result.frames.size(), static_cast<std::size_t>(frame_count));
+  ASSERT_EQ(result.frames.size(), static_cast<std::size_t>(lockstep_frames));
   ASSERT_GE(firstTracked(result), 0);
   std::size_t final_poses = 0;
   for (std::size_t i = 0; i < result.frames.size(); ++i) {
@@ -227,7 +227,8 @@ TEST(LockstepRun, WhatARunLeavesFitsTogether) {
     }
     final_poses += frame.has_final_pose;
   }
-  EXPECT_GE(final_poses, static_cast<std::size_t>(frame_count - 2)) << "the frames before the map have poses as well";
+  EXPECT_GE(final_poses, static_cast<std::size_t>(lockstep_frames - 2))
+      << "the frames before the map have poses as well";
 
   EXPECT_FALSE(result.map_points.empty());
   EXPECT_NE(result.initialisation, "");
@@ -253,8 +254,8 @@ TEST(LockstepRun, UnreadableFramesArePredictedAndCounted) {
   const std::set<int> unreadable{40, 41, 50};
   const RunResult result = run(Settings(), unreadable);
   EXPECT_EQ(result.unreadable_frames, 3);
-  ASSERT_EQ(result.frames.size(), static_cast<std::size_t>(frame_count));
-  for (int i = 0; i < frame_count; ++i) {
+  ASSERT_EQ(result.frames.size(), static_cast<std::size_t>(lockstep_frames));
+  for (int i = 0; i < lockstep_frames; ++i) {
     const FrameRecord& frame = result.frames[static_cast<std::size_t>(i)];
     if (unreadable.count(i) == 0) {
       EXPECT_EQ(frame.state, i < start ? TrackingState::initialising : TrackingState::tracking) << i;

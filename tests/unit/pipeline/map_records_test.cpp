@@ -7,20 +7,18 @@
 namespace edgeslam {
 namespace {
 
-const Camera camera = test::testCamera(CameraModel::pinhole_radial_tangential);
-
 Map mapOfEdges() {
   test::Random random(4);
   const test::EdgeScene scene = test::framesOnAWall(40);
   const std::vector<Pose> poses{Pose(), {Eigen::Quaterniond::Identity(), {0.4, 0, 0}}};
-  Map map = test::keyframesOf(camera, scene, poses, test::Sight(), random);
+  Map map = test::keyframesOf(test::distorted_camera, scene, poses, test::Sight(), random);
   test::addAllPoints(scene, map);
   return map;
 }
 
 TEST(MapRecords, EveryPointOnceInTheOrderOfItsEdge) {
   const Map map = mapOfEdges();
-  const auto records = mapPointRecords(map, camera);
+  const auto records = mapPointRecords(map, test::distorted_camera);
   ASSERT_EQ(records.size(), map.points.size());
   for (std::size_t i = 1; i < records.size(); ++i) {
     EXPECT_GE(records[i].chain, records[i - 1].chain);
@@ -34,7 +32,7 @@ TEST(MapRecords, EveryPointOnceInTheOrderOfItsEdge) {
 
 TEST(MapRecords, DirectionsRunAlongTheEdges) {
   const test::EdgeScene scene = test::framesOnAWall(40);
-  const auto records = mapPointRecords(mapOfEdges(), camera);
+  const auto records = mapPointRecords(mapOfEdges(), test::distorted_camera);
   int directed = 0;
   for (const MapPointRecord& record : records) {
     if (record.edge_direction.norm() == 0) continue;
@@ -93,7 +91,7 @@ TEST(MapRecords, EdgesOfDifferentKeyframesAreDifferentEdges) {
       map.points.emplace(point.id, point);
     }
   }
-  const auto records = mapPointRecords(map, camera);
+  const auto records = mapPointRecords(map, test::distorted_camera);
   ASSERT_EQ(records.size(), 6U);
   EXPECT_EQ(records[0].chain, records[2].chain);
   EXPECT_NE(records[2].chain, records[3].chain);

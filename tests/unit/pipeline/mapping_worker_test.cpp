@@ -11,8 +11,6 @@
 namespace edgeslam::test {
 namespace {
 
-const Camera camera = testCamera(CameraModel::pinhole_radial_tangential);
-
 MappingMessage messageOf(std::int64_t number, TrackedFrame frame) {
   MappingMessage message;
   message.number = number;
@@ -22,7 +20,7 @@ MappingMessage messageOf(std::int64_t number, TrackedFrame frame) {
 
 // A keyframe, or with -1 a frame before the map stands.
 MappingMessage seenIn(const EdgeScene& scene, std::int64_t number, const Pose& pose, KeyframeId keyframe) {
-  return messageOf(number, seen(camera, scene, pose, 10 * number, keyframe));
+  return messageOf(number, seen(distorted_camera, scene, pose, 10 * number, keyframe));
 }
 
 Pose sideways(int i) { return {rotationExp({0.002 * i, -0.002 * i, 0.002 * i}), {0.05 * i, 0.01 * i, 0.01 * i}}; }
@@ -52,8 +50,8 @@ Settings fastStart() {
 MappingWorker workerIn(const EdgeScene& scene, const std::vector<Pose>& poses) {
   Settings settings;
   settings.relocalisation_enabled = false;
-  MappingWorker worker(camera, settings);
-  worker.goOnWith(mapFrom(camera, scene, poses));
+  MappingWorker worker(distorted_camera, settings);
+  worker.goOnWith(mapFrom(distorted_camera, scene, poses));
   return worker;
 }
 
@@ -79,7 +77,7 @@ Correction movedBy(const Snapshot& snapshot, const Pose& move) {
 const Pose some_move{rotationExp({0.3, -0.5, 1}), {4, 5, -6}};
 
 TEST(MappingWorker, UpdatesAreNumberedOneByOneAndNameTheMessageTheyKnowOf) {
-  MappingWorker worker(camera, fastStart());
+  MappingWorker worker(distorted_camera, fastStart());
   std::int64_t next = 0;
   std::vector<MapUpdate> updates = start(worker, 0, next);
   ASSERT_TRUE(worker.mapper().initialised());
@@ -101,7 +99,7 @@ TEST(MappingWorker, UpdatesAreNumberedOneByOneAndNameTheMessageTheyKnowOf) {
 }
 
 TEST(MappingWorker, ASnapshotIsOfTheMapAfterAKeyframeAndOfNothingElse) {
-  MappingWorker worker(camera, fastStart());
+  MappingWorker worker(distorted_camera, fastStart());
   EXPECT_FALSE(worker.snapshot());
   const EdgeScene wall = framesOnAWall(21);
   worker.handle(seenIn(wall, 0, sideways(0), 0));
@@ -181,7 +179,7 @@ TEST(MappingWorker, ALostFrameThatIsNotFoundIsAnsweredWithTheReason) {
 }
 
 TEST(MappingWorker, ALostFrameBeforeAnyMapIsAnsweredToo) {
-  MappingWorker worker(camera, Settings());
+  MappingWorker worker(distorted_camera, Settings());
   const std::optional<MapUpdate> update = worker.handle(lostIn(framesOnAWall(24), 2, at(0), 1));
   ASSERT_TRUE(update);
   EXPECT_EQ(update->answers, 2);
@@ -255,7 +253,7 @@ TEST(MappingWorker, AClosedLoopIsReported) {
 }
 
 TEST(MappingWorker, ACorrectionOfAMapThatWasGivenUpIsIgnored) {
-  MappingWorker worker(camera, fastStart());
+  MappingWorker worker(distorted_camera, fastStart());
   std::int64_t next = 0;
   start(worker, 0, next);
   Correction correction = movedBy(worker.snapshot().value(), some_move);
@@ -281,8 +279,8 @@ TEST(MappingWorker, CulledKeyframesAreReported) {
   Settings settings;
   settings.mapping.culling.recent_keyframes = 3;
   settings.mapping.culling.most_keyframes = 8;
-  MappingWorker worker(camera, settings);
-  worker.goOnWith(mapFrom(camera, scene, row(4, 0.5)));
+  MappingWorker worker(distorted_camera, settings);
+  worker.goOnWith(mapFrom(distorted_camera, scene, row(4, 0.5)));
   std::size_t culled = 0;
   for (KeyframeId id = 4; id < 15; ++id) {
     worker.handle(seenIn(scene, id, at(0.5 * id), id));

@@ -10,7 +10,7 @@
 namespace edgeslam {
 namespace {
 
-constexpr int frame_count = 60;
+constexpr int masked_frames = 60;
 constexpr int plate_rows = 50;
 
 // Stripes and squares: more to see than on the walls.
@@ -26,7 +26,7 @@ class MaskedRun : public ::testing::Test {
   MaskedRun() {
     SimulationOptions options;
     options.scene = SceneKind::panels_textured;
-    options.frames = frame_count;
+    options.frames = masked_frames;
     options.width = 320;
     options.height = 240;
     sequence_ = makeSequence(options);
@@ -36,8 +36,8 @@ class MaskedRun : public ::testing::Test {
 
   // Past the plate. `observations_under_it`: of keyframes, under the plate.
   RunResult run(const Camera& camera, int& observations_under_it) const {
-    LockstepRun lockstep(camera, Settings(), frame_count, 0);
-    for (int i = 0; i < frame_count; ++i) {
+    LockstepRun lockstep(camera, Settings(), masked_frames, 0);
+    for (int i = 0; i < masked_frames; ++i) {
       cv::Mat grey = sequence_.frame(i).grey;
       plate(grey.cols).copyTo(grey.rowRange(0, plate_rows));
       lockstep.process(i, sequence_.time(i), grey);

@@ -8,8 +8,6 @@
 namespace edgeslam::test {
 namespace {
 
-const Camera camera = testCamera(CameraModel::pinhole_radial_tangential);
-
 Settings settingsOf(const PlacesOptions& places) {
   Settings settings;
   settings.places = places;
@@ -34,7 +32,7 @@ PlacesOptions neverDue(int old_keyframes) {
 // The map as it was after the first `count` keyframes of a way: each sees what it sees, and nothing is wrong.
 Map grown(const EdgeScene& scene, const std::vector<Pose>& way, std::size_t count, std::int64_t interval_ns = 0,
           std::int64_t first_frame = 0) {
-  Map map = mapFrom(camera, scene, {way.begin(), way.begin() + static_cast<std::ptrdiff_t>(count)});
+  Map map = mapFrom(distorted_camera, scene, {way.begin(), way.begin() + static_cast<std::ptrdiff_t>(count)});
   for (Keyframe& keyframe : map.keyframes) {
     keyframe.frame_index += first_frame;
     keyframe.time_ns = interval_ns * keyframe.id;
@@ -73,7 +71,7 @@ std::vector<KeyframeId> changedAt(const std::vector<Correction>& corrections, Ke
 
 TEST(PlacesWorker, TheWholeMapIsAdjustedEverySoManyKeyframes) {
   const EdgeScene scene = framesOnAWall(25);
-  PlacesWorker places(camera, settingsOf(dueEvery(5, 1e6)));
+  PlacesWorker places(distorted_camera, settingsOf(dueEvery(5, 1e6)));
   const auto done = corrections(places, scene, row(17, 0.05), 3, 16);
   EXPECT_EQ(changedAt(done, 3), (std::vector<KeyframeId>{8, 13}));
   for (const Correction& correction : done) {
@@ -84,7 +82,7 @@ TEST(PlacesWorker, TheWholeMapIsAdjustedEverySoManyKeyframes) {
 
 TEST(PlacesWorker, TheWholeMapIsAdjustedEverySoManySeconds) {
   const EdgeScene scene = framesOnAWall(25);
-  PlacesWorker places(camera, settingsOf(dueEvery(1000, 4.9)));
+  PlacesWorker places(distorted_camera, settingsOf(dueEvery(1000, 4.9)));
   const auto done = corrections(places, scene, row(17, 0.02), 3, 16, /*interval_ns=*/1'000'000'000);
   EXPECT_EQ(changedAt(done, 3), (std::vector<KeyframeId>{8, 13}));
 }
@@ -92,7 +90,7 @@ TEST(PlacesWorker, TheWholeMapIsAdjustedEverySoManySeconds) {
 TEST(PlacesWorker, AnAdjustmentBringsBackWhatWasMovedAndTellsAllKeyframes) {
   const EdgeScene scene = framesOnAWall(25);
   const std::vector<Pose> way = row(5, 0.1);
-  PlacesWorker places(camera, settingsOf(dueEvery(1, 1e6)));
+  PlacesWorker places(distorted_camera, settingsOf(dueEvery(1, 1e6)));
   EXPECT_TRUE(places.work(snapshotOf(grown(scene, way, 4))).change.empty()) << "the first one: just mapped";
   Map moved = grown(scene, way, 5);
   moved.keyframes[1].world_T_camera.translation.y() += 0.01;
@@ -112,7 +110,7 @@ TEST(PlacesWorker, AnAdjustmentBringsBackWhatWasMovedAndTellsAllKeyframes) {
 TEST(PlacesWorker, SnapshotsPassedOverDoNotPutOffAnAdjustment) {
   const EdgeScene scene = framesOnAWall(25);
   const std::vector<Pose> way = row(17, 0.05);
-  PlacesWorker places(camera, settingsOf(dueEvery(5, 1e6)));
+  PlacesWorker places(distorted_camera, settingsOf(dueEvery(5, 1e6)));
   EXPECT_TRUE(places.work(snapshotOf(grown(scene, way, 4))).change.empty());
   EXPECT_FALSE(places.work(snapshotOf(grown(scene, way, 12))).change.empty()) << "8 keyframes later";
   EXPECT_TRUE(places.work(snapshotOf(grown(scene, way, 16))).change.empty()) << "4 after the last time";
@@ -122,7 +120,7 @@ TEST(PlacesWorker, SnapshotsPassedOverDoNotPutOffAnAdjustment) {
 TEST(PlacesWorker, AMapBegunAnewIsCountedAnew) {
   const EdgeScene scene = framesOnAWall(25);
   const std::vector<Pose> way = row(10, 0.05);
-  PlacesWorker places(camera, settingsOf(dueEvery(5, 1e6)));
+  PlacesWorker places(distorted_camera, settingsOf(dueEvery(5, 1e6)));
   corrections(places, scene, way, 3, 6);
   for (std::size_t count = 4; count <= 9; ++count) {
     const Correction correction = places.work(snapshotOf(grown(scene, way, count, 0, /*first_frame=*/500)));
@@ -140,7 +138,7 @@ TEST(PlacesWorker, AnOldPartIsMetOnceAMeetingAndAgainLater) {
   walk(1, 3);  // keyframes 15 to 17, at the start
   walk(40, 12);
   walk(41, 3);  // keyframes 30 to 32, where 18 was
-  PlacesWorker places(camera, settingsOf(neverDue(/*old_keyframes=*/8)));
+  PlacesWorker places(distorted_camera, settingsOf(neverDue(/*old_keyframes=*/8)));
   const auto done = corrections(places, scene, way, 2, 32);
   EXPECT_EQ(changedAt(done, 2), (std::vector<KeyframeId>{15, 30}));
   for (std::size_t i = 0; i < done.size(); ++i) {
@@ -163,7 +161,7 @@ TEST(PlacesWorker, ALongMeetingSharesOutItsDriftFromTimeToTimeButIsToldOnce) {
   std::vector<Pose> way;
   for (int k = 0; k < 15; ++k) way.push_back(at(1.5 * k));
   for (int k = 0; k < 8; ++k) way.push_back(at(1 + 0.8 * k));  // keyframes 15 to 22, along the start
-  PlacesWorker places(camera, settingsOf(neverDue(/*old_keyframes=*/8)));
+  PlacesWorker places(distorted_camera, settingsOf(neverDue(/*old_keyframes=*/8)));
   const auto done = corrections(places, scene, way, 12, 22);
   EXPECT_EQ(changedAt(done, 12), (std::vector<KeyframeId>{15, 18, 21})) << "every 8 / 4 + 1 keyframes";
   for (std::size_t i = 0; i < done.size(); ++i) {
@@ -180,7 +178,7 @@ TEST(PlacesWorker, AMeetingIsAnAdjustmentOfTheWholeMapToo) {
   for (int k = 0; k < 9; ++k) way.push_back(at(40 + 1.5 * k));
   PlacesOptions options = neverDue(/*old_keyframes=*/8);
   options.global_interval_keyframes = 7;
-  PlacesWorker places(camera, settingsOf(options));
+  PlacesWorker places(distorted_camera, settingsOf(options));
   // 11 after 4, met at 15, due at 22.
   const auto done = corrections(places, scene, way, 4, 24);
   EXPECT_EQ(changedAt(done, 4), (std::vector<KeyframeId>{11, 15, 22}));
@@ -193,7 +191,7 @@ TEST(PlacesWorker, WithoutLoopsAnOldPartIsNotLookedFor) {
   way.push_back(at(2.5));
   Settings settings = settingsOf(neverDue(/*old_keyframes=*/8));
   settings.loops.enabled = false;
-  PlacesWorker places(camera, settings);
+  PlacesWorker places(distorted_camera, settings);
   for (const Correction& correction : corrections(places, scene, way, 12, 16)) {
     EXPECT_TRUE(correction.change.empty());
     EXPECT_TRUE(correction.events.empty());
@@ -205,7 +203,7 @@ TEST(PlacesWorker, ASavedMapGoneOnWithIsNoLoop) {
   const EdgeScene scene = longWall(80, 1600);
   std::vector<Pose> way = row(15, 1.5);
   for (int k = 0; k < 4; ++k) way.push_back(at(1 + 0.8 * k));  // of the new run, found again at the start
-  PlacesWorker places(camera, settingsOf(neverDue(/*old_keyframes=*/8)));
+  PlacesWorker places(distorted_camera, settingsOf(neverDue(/*old_keyframes=*/8)));
   for (const Correction& correction : corrections(places, scene, way, 15, 18)) {
     EXPECT_FALSE(correction.loop) << "it was never away";
     EXPECT_TRUE(correction.events.empty());

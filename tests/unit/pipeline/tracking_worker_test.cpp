@@ -8,8 +8,6 @@
 namespace edgeslam {
 namespace {
 
-const Camera& camera = walking_camera;
-constexpr std::int64_t interval_ns = walking_interval_ns;
 constexpr std::int64_t long_after_ns = 900'000'000;  // the last frame's points are not looked for any more
 
 Pose path(int i) { return walk(i); }
@@ -34,12 +32,12 @@ struct Followed {
   MapUpdate update;  // the last one that it took
 
   // Follows the plane up to frame `last`.
-  explicit Followed(int last, const Settings& settings = Settings()) : worker(camera, settings) {
+  explicit Followed(int last, const Settings& settings = Settings()) : worker(walking_camera, settings) {
     process(0, 0, imageAt(0));
     update.number = update.answers = 0;
     update.view = knownMap(messages.at(0).frame);
     take(worker, update);
-    for (int i = 1; i <= last; ++i) process(i, i * interval_ns, imageAt(i));
+    for (int i = 1; i <= last; ++i) process(i, i * walking_interval_ns, imageAt(i));
   }
 
   FrameResult process(std::int64_t index, std::int64_t time_ns, const cv::Mat& grey) {
@@ -71,8 +69,8 @@ struct Followed {
     found.world_T_camera = path(i);
     found.covariance = 1e-6 * Matrix6d::Identity();
     for (const ViewPoint& point : update.view.points) {
-      const Eigen::Vector2d pixel = project(camera, path(i).inverse() * worldPosition(update.view, point));
-      if (!insideImage(camera, pixel, 20)) continue;
+      const Eigen::Vector2d pixel = project(walking_camera, path(i).inverse() * worldPosition(update.view, point));
+      if (!insideImage(walking_camera, pixel, 20)) continue;
       found.points.push_back({point.id, point.source_measurement, point.corner});
       found.points.back().measurement.pixel = pixel;
     }
@@ -81,12 +79,12 @@ struct Followed {
 };
 
 TEST(TrackingWorker, BeforeTheMapEveryFrameIsAMessageAndNoneHasAPose) {
-  TrackingWorker worker(camera, Settings());
+  TrackingWorker worker(walking_camera, Settings());
   std::vector<MappingMessage> messages;
   for (int i = 0; i < 4; ++i) {
-    const FrameResult result = processFrame(worker, i, i * interval_ns, imageAt(i), messages);
+    const FrameResult result = processFrame(worker, i, i * walking_interval_ns, imageAt(i), messages);
     EXPECT_EQ(result.index, i);
-    EXPECT_EQ(result.time_ns, i * interval_ns);
+    EXPECT_EQ(result.time_ns, i * walking_interval_ns);
     EXPECT_EQ(result.state, TrackingState::initialising);
     EXPECT_FALSE(result.has_pose);
     EXPECT_NE(result.reason, "");
@@ -107,7 +105,7 @@ TEST(TrackingWorker, MessagesAreNumberedOneByOneAndKeyframesNeverGoBack) {
   for (int i = 4; i < 30; ++i) {
     // Lost now and then, for frames in a row; questions are answered: not found.
     const bool lost = i % 9 == 4 || i % 9 == 5;
-    run.process(i, i * interval_ns, lost ? elsewhere() : imageAt(i));
+    run.process(i, i * walking_interval_ns, lost ? elsewhere() : imageAt(i));
     run.nextUpdate(run.messages.back().number).not_found = "it looks like nothing";
     take(run.worker, run.update);
   }
@@ -128,7 +126,7 @@ TEST(TrackingWorker, MessagesAreNumberedOneByOneAndKeyframesNeverGoBack) {
 
 TEST(TrackingWorker, ALostFrameIsAskedForWithAllThatIsKnownOfIt) {
   Followed run(3);
-  const FrameResult lost = run.process(4, 4 * interval_ns, elsewhere());
+  const FrameResult lost = run.process(4, 4 * walking_interval_ns, elsewhere());
   EXPECT_EQ(lost.state, TrackingState::lost);
   EXPECT_FALSE(lost.has_pose);
   EXPECT_EQ(lost.reference, -1);
@@ -166,11 +164,11 @@ TEST(TrackingWorker, APoseThatTheMapDoesNotBearOutIsLookedForInTheMapAsItWas) {
   Followed run(6);
   EXPECT_TRUE(run.questions().empty());
   addPointsThatAreElsewhere(run.nextUpdate(0).view);
-  const double sigma_before = run.process(7, 7 * interval_ns, imageAt(7)).world_covariance(0, 0);
+  const double sigma_before = run.process(7, 7 * walking_interval_ns, imageAt(7)).world_covariance(0, 0);
   take(run.worker, run.update);
   FrameResult doubtful;
   int i = 8;
-  for (; i < 25 && run.questions().empty(); ++i) doubtful = run.process(i, i * interval_ns, imageAt(i));
+  for (; i < 25 && run.questions().empty(); ++i) doubtful = run.process(i, i * walking_interval_ns, imageAt(i));
   ASSERT_EQ(run.questions().size(), 1U);
   EXPECT_EQ(doubtful.state, TrackingState::tracking);
   EXPECT_EQ(doubtful.reason.rfind("in doubt: of ", 0), 0U) << doubtful.reason;
@@ -184,12 +182,12 @@ TEST(TrackingWorker, APoseThatTheMapDoesNotBearOutIsLookedForInTheMapAsItWas) {
   EXPECT_GT(question.seconds_since, 0);
 
   // It is asked for one answer at a time, and not with every frame; the answer holds though poses came meanwhile.
-  run.process(i, i * interval_ns, imageAt(i));
+  run.process(i, i * walking_interval_ns, imageAt(i));
   EXPECT_EQ(run.questions().size(), 1U);
   MapUpdate& answer = run.nextUpdate(question.number);
   answer.found = run.foundAt(question.frame.frame_index, static_cast<int>(question.frame.frame_index));
   take(run.worker, answer);
-  const FrameResult found = run.process(i + 1, (i + 1) * interval_ns, imageAt(i + 1));
+  const FrameResult found = run.process(i + 1, (i + 1) * walking_interval_ns, imageAt(i + 1));
   EXPECT_EQ(found.state, TrackingState::relocalised);
   EXPECT_LT(distance(found.world_T_camera, path(i + 1)), 0.01);
 }
@@ -197,7 +195,7 @@ TEST(TrackingWorker, APoseThatTheMapDoesNotBearOutIsLookedForInTheMapAsItWas) {
 TEST(TrackingWorker, OnlyOneQuestionAtATime) {
   Followed run(3);
   for (int i = 4; i < 8; ++i) {
-    run.process(i, i * interval_ns, elsewhere());
+    run.process(i, i * walking_interval_ns, elsewhere());
     // What mapping made of the messages before the question answers nothing.
     run.nextUpdate(run.questions().at(0).number - 1);
     take(run.worker, run.update);
@@ -205,7 +203,7 @@ TEST(TrackingWorker, OnlyOneQuestionAtATime) {
   ASSERT_EQ(run.questions().size(), 1U);
   run.nextUpdate(run.questions().at(0).number).not_found = "too few points agree";
   take(run.worker, run.update);
-  const FrameResult next = run.process(8, 8 * interval_ns, elsewhere());
+  const FrameResult next = run.process(8, 8 * walking_interval_ns, elsewhere());
   EXPECT_EQ(next.state, TrackingState::lost);
   EXPECT_NE(next.reason.find("too few points agree"), std::string::npos) << next.reason;
   ASSERT_EQ(run.questions().size(), 2U);
@@ -216,7 +214,7 @@ TEST(TrackingWorker, OnlyOneQuestionAtATime) {
 TEST(TrackingWorker, LongAfterTheLossTheTracksAreNoHelpAnyMore) {
   Followed run(3);
   for (int i = 0; i < 15; ++i) {
-    run.process(4 + i, (4 + i) * interval_ns, elsewhere());
+    run.process(4 + i, (4 + i) * walking_interval_ns, elsewhere());
     run.nextUpdate(run.messages.back().number);
     take(run.worker, run.update);
   }
@@ -230,7 +228,7 @@ TEST(TrackingWorker, WhereNothingIsLookedForNothingIsAsked) {
   Settings settings;
   settings.relocalisation_enabled = settings.mapping.recovery_enabled = false;
   Followed run(3, settings);
-  EXPECT_EQ(run.process(4, 4 * interval_ns, elsewhere()).state, TrackingState::lost);
+  EXPECT_EQ(run.process(4, 4 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
   EXPECT_TRUE(run.questions().empty());
 }
 
@@ -241,7 +239,7 @@ INSTANTIATE_TEST_SUITE_P(How, TrackingWorkerFound,
 
 TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
   Followed run(3);
-  run.process(4, 4 * interval_ns, elsewhere());
+  run.process(4, 4 * walking_interval_ns, elsewhere());
   run.nextUpdate(run.messages.back().number);
   take(run.worker, run.update);
   // Long after the loss the camera is back, but no point is followed there.
@@ -249,7 +247,7 @@ TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
   const MappingMessage question = run.messages.back();
   ASSERT_EQ(question.frame.kind, FrameKind::lost);
   ASSERT_EQ(question.frame.frame_index, 90);
-  ASSERT_EQ(run.process(91, long_after_ns + interval_ns / 2, elsewhere()).state, TrackingState::lost);
+  ASSERT_EQ(run.process(91, long_after_ns + walking_interval_ns / 2, elsewhere()).state, TrackingState::lost);
   EXPECT_EQ(run.messages.back().number, question.number);
 
   MapUpdate& answer = run.nextUpdate(question.number);
@@ -258,7 +256,7 @@ TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
   ASSERT_GT(answer.found->points.size(), 50U);
   take(run.worker, answer);
   for (int i = 9; i <= 12; ++i) {
-    const FrameResult result = run.process(83 + i, long_after_ns + (i - 8) * interval_ns, imageAt(i));
+    const FrameResult result = run.process(83 + i, long_after_ns + (i - 8) * walking_interval_ns, imageAt(i));
     ASSERT_TRUE(result.has_pose) << result.reason;
     EXPECT_EQ(result.state, i == 9 ? GetParam() : TrackingState::tracking) << i;
     EXPECT_EQ(result.reason, "");
@@ -285,15 +283,15 @@ FoundFrame astray(std::int64_t frame_index, const Followed& run) {
 
 TEST(TrackingWorker, AnAnswerAfterTrackingWasRegainedIsNotUsed) {
   Followed run(3);
-  ASSERT_EQ(run.process(4, 4 * interval_ns, elsewhere()).state, TrackingState::lost);
+  ASSERT_EQ(run.process(4, 4 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
   const std::int64_t question = run.messages.back().number;
-  ASSERT_EQ(run.process(5, 5 * interval_ns, imageAt(5)).state, TrackingState::tracking);
+  ASSERT_EQ(run.process(5, 5 * walking_interval_ns, imageAt(5)).state, TrackingState::tracking);
   MapUpdate& answer = run.nextUpdate(question);
   answer.found = astray(4, run);
   take(run.worker, answer);
   EXPECT_EQ(run.worker.tracker().view().version, answer.view.version) << "the view is taken";
   for (int i = 6; i < 9; ++i) {
-    const FrameResult result = run.process(i, i * interval_ns, imageAt(i));
+    const FrameResult result = run.process(i, i * walking_interval_ns, imageAt(i));
     EXPECT_EQ(result.state, TrackingState::tracking) << result.reason;
     EXPECT_LT(distance(result.world_T_camera, path(i)), 0.001) << i;
   }
@@ -301,27 +299,27 @@ TEST(TrackingWorker, AnAnswerAfterTrackingWasRegainedIsNotUsed) {
 
 TEST(TrackingWorker, NorIsItWhenTrackingWasLostOnceMore) {
   Followed run(3);
-  ASSERT_EQ(run.process(4, 4 * interval_ns, elsewhere()).state, TrackingState::lost);
+  ASSERT_EQ(run.process(4, 4 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
   const std::int64_t question = run.messages.back().number;
-  for (int i = 5; i < 8; ++i) run.process(i, i * interval_ns, imageAt(i));
-  ASSERT_EQ(run.process(8, 8 * interval_ns, elsewhere()).state, TrackingState::lost);
+  for (int i = 5; i < 8; ++i) run.process(i, i * walking_interval_ns, imageAt(i));
+  ASSERT_EQ(run.process(8, 8 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
   MapUpdate& answer = run.nextUpdate(question);
   answer.found = astray(4, run);
   take(run.worker, answer);
   // Frame 4 is history: tracking goes on from frame 7.
-  const FrameResult result = run.process(9, 9 * interval_ns, imageAt(9));
+  const FrameResult result = run.process(9, 9 * walking_interval_ns, imageAt(9));
   EXPECT_EQ(result.state, TrackingState::tracking) << result.reason;
   EXPECT_LT(distance(result.world_T_camera, path(9)), 0.001);
 }
 
 TEST(TrackingWorker, NorDoesItsReasonTellOfTheNextLoss) {
   Followed run(3);
-  ASSERT_EQ(run.process(4, 4 * interval_ns, elsewhere()).state, TrackingState::lost);
+  ASSERT_EQ(run.process(4, 4 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
   const std::int64_t question = run.messages.back().number;
-  ASSERT_EQ(run.process(5, 5 * interval_ns, imageAt(5)).state, TrackingState::tracking);
+  ASSERT_EQ(run.process(5, 5 * walking_interval_ns, imageAt(5)).state, TrackingState::tracking);
   run.nextUpdate(question).not_found = "too few points agree";
   take(run.worker, run.update);
-  const FrameResult lost = run.process(6, 6 * interval_ns, elsewhere());
+  const FrameResult lost = run.process(6, 6 * walking_interval_ns, elsewhere());
   EXPECT_EQ(lost.state, TrackingState::lost);
   EXPECT_EQ(lost.reason.find("too few points agree"), std::string::npos) << lost.reason;
 }
@@ -329,7 +327,7 @@ TEST(TrackingWorker, NorDoesItsReasonTellOfTheNextLoss) {
 TEST(TrackingWorker, AFrameThatCouldNotBeReadIsPredictedAndAsksNothing) {
   Followed run(4);
   const std::size_t messages = run.messages.size();
-  const FrameResult result = run.worker.skip(5, 5 * interval_ns, "frame 5 is cut off");
+  const FrameResult result = run.worker.skip(5, 5 * walking_interval_ns, "frame 5 is cut off");
   EXPECT_EQ(result.index, 5);
   EXPECT_EQ(result.state, TrackingState::predicted);
   EXPECT_EQ(result.reason, "frame 5 is cut off");
@@ -340,7 +338,7 @@ TEST(TrackingWorker, AFrameThatCouldNotBeReadIsPredictedAndAsksNothing) {
 
 TEST(TrackingWorker, InAMapMadeEarlierFramesAreLostUntilOneIsFound) {
   const Followed earlier(0);
-  TrackingWorker worker(camera, Settings());
+  TrackingWorker worker(walking_camera, Settings());
   worker.goOnWith(earlier.update.view, 10'000);
   std::vector<MappingMessage> messages;
   EXPECT_EQ(processFrame(worker, 0, long_after_ns, imageAt(4), messages).state, TrackingState::lost);
@@ -352,7 +350,7 @@ TEST(TrackingWorker, InAMapMadeEarlierFramesAreLostUntilOneIsFound) {
   answer.answers = 0;
   answer.found = earlier.foundAt(0, 4);
   take(worker, answer);
-  const FrameResult result = processFrame(worker, 1, long_after_ns + interval_ns, imageAt(5), messages);
+  const FrameResult result = processFrame(worker, 1, long_after_ns + walking_interval_ns, imageAt(5), messages);
   EXPECT_EQ(result.state, TrackingState::relocalised) << result.reason;
   EXPECT_LT(distance(result.world_T_camera, path(5)), 0.001);
   for (const MappingMessage& message : messages) {
