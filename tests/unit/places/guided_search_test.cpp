@@ -9,12 +9,11 @@
 #include <limits>
 #include <set>
 
+#include "unit/geometry/degree.h"
 #include "unit/places/made_place.h"
 
 namespace edgeslam::test {
 namespace {
-
-constexpr double degree = M_PI / 180;
 
 // A room seen by three keyframes, and a frame from a little beside the middle one.
 struct SeenRoom {
@@ -40,7 +39,7 @@ struct SeenRoom {
   }
 };
 
-const SeenRoom& room() {
+const SeenRoom& seenRoom() {
   static const SeenRoom seen;
   return seen;
 }
@@ -60,18 +59,19 @@ GuidedSearchOptions noDemands(bool bare) {
 }
 
 TEST(GuidedSearch, FindsThePoseAndWhatSpeaksForIt) {
-  const GuidedSearchResult found = room().search({});
+  const GuidedSearchResult found = seenRoom().search({});
   ASSERT_TRUE(found.accepted) << found.reason;
   EXPECT_TRUE(found.reason.empty());
-  EXPECT_LT((found.pose.world_T_camera.translation - room().truth.translation).norm(), 0.01);
-  EXPECT_LT(rotationAngle(found.pose.world_T_camera.rotation, room().truth.rotation), 0.3 * degree);
+  EXPECT_LT((found.pose.world_T_camera.translation - seenRoom().truth.translation).norm(), 0.01);
+  EXPECT_LT(rotationAngle(found.pose.world_T_camera.rotation, seenRoom().truth.rotation), 0.3 * degree);
   const PoseEvidence& evidence = found.evidence;
   EXPECT_EQ(static_cast<int>(found.inliers.size()), evidence.inliers);
   int corners = 0;
   for (const MatchedPoint& match : found.inliers) {
     corners += match.corner ? 1 : 0;
-    const Eigen::Vector3d seen = room().truth.inverse() * worldPosition(room().map, room().map.points.at(match.point));
-    const Eigen::Vector2d apart = project(room().camera, seen) - match.measurement.pixel;
+    const Eigen::Vector3d seen =
+        seenRoom().truth.inverse() * worldPosition(seenRoom().map, seenRoom().map.points.at(match.point));
+    const Eigen::Vector2d apart = project(seenRoom().camera, seen) - match.measurement.pixel;
     EXPECT_LT(std::abs(apart.dot(match.measurement.normal)), 2.5) << match.point;
   }
   EXPECT_EQ(corners, evidence.corner_inliers);
@@ -87,9 +87,9 @@ TEST(GuidedSearch, FindsThePoseAndWhatSpeaksForIt) {
 
 // The stated deviations are those of the pose: the error is within four of them, and they are not idle.
 TEST(GuidedSearch, ItsDeviationsAreThoseOfThePose) {
-  const GuidedSearchResult found = room().search({});
+  const GuidedSearchResult found = seenRoom().search({});
   ASSERT_TRUE(found.accepted);
-  const double off = (found.pose.world_T_camera.translation - room().truth.translation).norm();
+  const double off = (found.pose.world_T_camera.translation - seenRoom().truth.translation).norm();
   EXPECT_LT(off, 4 * found.evidence.position_sigma * found.evidence.median_distance);
   EXPECT_GT(found.evidence.position_sigma, 1e-5);
   EXPECT_LT(found.evidence.position_sigma, 0.01);
@@ -103,7 +103,7 @@ TEST(GuidedSearch, ItsDeviationsAreThoseOfThePose) {
 }
 
 TEST(GuidedSearch, EachDemandRefusesJustBeyondWhatSpeaksForThePose) {
-  const PoseEvidence evidence = room().search(noDemands(false)).evidence;
+  const PoseEvidence evidence = seenRoom().search(noDemands(false)).evidence;
   ASSERT_GT(evidence.corner_inliers, 0);
   const double inlier_share = evidence.share(),
                corner_share = static_cast<double>(evidence.corner_inliers) / evidence.visible_corners;
@@ -127,22 +127,22 @@ TEST(GuidedSearch, EachDemandRefusesJustBeyondWhatSpeaksForThePose) {
   for (const Demand& demand : demands) {
     GuidedSearchOptions options = noDemands(demand.bare);
     demand.ask(options, 0.999 * demand.met);
-    EXPECT_TRUE(room().search(options).accepted) << demand.name;
+    EXPECT_TRUE(seenRoom().search(options).accepted) << demand.name;
     demand.ask(options, 1.001 * demand.met);
-    const GuidedSearchResult refused = room().search(options);
+    const GuidedSearchResult refused = seenRoom().search(options);
     EXPECT_FALSE(refused.accepted) << demand.name;
     EXPECT_FALSE(refused.reason.empty()) << demand.name;
     if (!demand.bare) continue;
     options.telling_corners = evidence.corner_inliers;  // so many tell the place: nothing more is asked
-    EXPECT_TRUE(room().search(options).accepted) << demand.name;
+    EXPECT_TRUE(seenRoom().search(options).accepted) << demand.name;
     options.telling_corners = evidence.corner_inliers + 1;
-    EXPECT_FALSE(room().search(options).accepted) << demand.name;
+    EXPECT_FALSE(seenRoom().search(options).accepted) << demand.name;
   }
 }
 
 // Bare or not.
 TEST(GuidedSearch, ManyCornersMakeUpForPointsThatAreNotFound) {
-  const PoseEvidence evidence = room().search(noDemands(false)).evidence;
+  const PoseEvidence evidence = seenRoom().search(noDemands(false)).evidence;
   ASSERT_GT(evidence.corner_inliers, 0);
   for (const bool bare : {false, true}) {
     GuidedSearchOptions options = noDemands(bare);
@@ -151,50 +151,50 @@ TEST(GuidedSearch, ManyCornersMakeUpForPointsThatAreNotFound) {
     options.many_corners_inlier_share = 0.999 * evidence.share();
     options.many_corners_share = 0.999 * evidence.corner_inliers / evidence.visible_corners;
     options.many_corners = evidence.corner_inliers + 1;
-    EXPECT_FALSE(room().search(options).accepted) << bare;
+    EXPECT_FALSE(seenRoom().search(options).accepted) << bare;
     options.many_corners = evidence.corner_inliers;
-    EXPECT_TRUE(room().search(options).accepted) << bare;
+    EXPECT_TRUE(seenRoom().search(options).accepted) << bare;
     GuidedSearchOptions more = options;
     more.many_corners_inlier_share = 1.001 * evidence.share();
-    EXPECT_FALSE(room().search(more).accepted) << bare;
+    EXPECT_FALSE(seenRoom().search(more).accepted) << bare;
     more = options;
     more.many_corners_share = 1.001 * evidence.corner_inliers / evidence.visible_corners;
-    EXPECT_FALSE(room().search(more).accepted) << bare;
+    EXPECT_FALSE(seenRoom().search(more).accepted) << bare;
   }
 }
 
 TEST(GuidedSearch, EachCountRefusesOneBeyondWhatSpeaksForThePose) {
-  const PoseEvidence evidence = room().search(noDemands(false)).evidence;
+  const PoseEvidence evidence = seenRoom().search(noDemands(false)).evidence;
   GuidedSearchOptions options = noDemands(false);
   options.fewest_inliers = evidence.inliers;
-  EXPECT_TRUE(room().search(options).accepted);
+  EXPECT_TRUE(seenRoom().search(options).accepted);
   options.fewest_inliers = evidence.inliers + 1;
-  EXPECT_FALSE(room().search(options).accepted);
+  EXPECT_FALSE(seenRoom().search(options).accepted);
   options = noDemands(false);
   options.fewest_cells = evidence.cells;
-  EXPECT_TRUE(room().search(options).accepted);
+  EXPECT_TRUE(seenRoom().search(options).accepted);
   options.fewest_cells = evidence.cells + 1;
-  EXPECT_FALSE(room().search(options).accepted);
+  EXPECT_FALSE(seenRoom().search(options).accepted);
   // Of few corners nothing is asked.
   options = noDemands(false);
   options.corner_share = 1.01;
   options.fewest_corners = evidence.visible_corners;
-  EXPECT_FALSE(room().search(options).accepted);
+  EXPECT_FALSE(seenRoom().search(options).accepted);
   options.fewest_corners = evidence.visible_corners + 1;
-  EXPECT_TRUE(room().search(options).accepted);
+  EXPECT_TRUE(seenRoom().search(options).accepted);
 }
 
 TEST(GuidedSearch, LooksForNoMorePointsThanItMayHalfOfThemCorners) {
   GuidedSearchOptions options = noDemands(false);
   options.searched_points = 100000;
-  const PoseEvidence all = room().search(options).evidence;
+  const PoseEvidence all = seenRoom().search(options).evidence;
   ASSERT_GT(all.visible_corners, 12);
   ASSERT_GT(all.visible - all.visible_corners, 12);
   options.searched_points = all.visible + 20;  // as the pose may see a few more
-  EXPECT_EQ(room().search(options).evidence.visible, all.visible);
-  EXPECT_EQ(room().search(options).evidence.visible_corners, all.visible_corners);
+  EXPECT_EQ(seenRoom().search(options).evidence.visible, all.visible);
+  EXPECT_EQ(seenRoom().search(options).evidence.visible_corners, all.visible_corners);
   options.searched_points = 24;
-  const GuidedSearchResult few = room().search(options);
+  const GuidedSearchResult few = seenRoom().search(options);
   EXPECT_TRUE(few.accepted);
   EXPECT_EQ(few.evidence.visible, 24);
   EXPECT_EQ(few.evidence.visible_corners, 12);
@@ -224,12 +224,12 @@ TEST(GuidedSearch, ThePointsAroundAKeyframeAreItsOwnAndThoseOfItsBestNeighbours)
 }
 
 TEST(GuidedSearch, AnotherRoomGivesNoPoseThatIsAccepted) {
-  const cv::Mat grey = renderRoom(8, room().camera, room().truth);
+  const cv::Mat grey = renderRoom(8, seenRoom().camera, seenRoom().truth);
   FrameImages images;
   images.pyramid = buildPyramid(grey, 4);
   const EdgeMap edges = detectEdges(grey, {});
   const GuidedSearchResult found =
-      guidedSearch(room().camera, room().map, room().points, {images, edges, {}}, room().truth, {});
+      guidedSearch(seenRoom().camera, seenRoom().map, seenRoom().points, {images, edges, {}}, seenRoom().truth, {});
   EXPECT_FALSE(found.accepted);
   EXPECT_FALSE(found.reason.empty());
 }
@@ -238,14 +238,14 @@ TEST(GuidedSearch, AnotherRoomGivesNoPoseThatIsAccepted) {
 TEST(GuidedSearch, SearchesByThePatchOfTheNearestKeyframe) {
   for (const KeyframeId near : {0, 1, 2}) {
     std::vector<PatchSource> sources;
-    const Pose& pose = room().map.keyframes[near].world_T_camera;
-    const SearchPoints points = searchPoints(room().map, room().points, pose, sources);
+    const Pose& pose = seenRoom().map.keyframes[near].world_T_camera;
+    const SearchPoints points = searchPoints(seenRoom().map, seenRoom().points, pose, sources);
     ASSERT_EQ(points.size(), sources.size());
     ASSERT_GT(points.size(), 100U);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const bool seen_there = findObservation(room().map.keyframes[near], points[i].id) != nullptr;
+      const bool seen_there = findObservation(seenRoom().map.keyframes[near], points[i].id) != nullptr;
       EXPECT_EQ(sources[i].keyframe == near, seen_there) << points[i].id;
-      const PointObservation* seen = findObservation(room().map.keyframes[sources[i].keyframe], points[i].id);
+      const PointObservation* seen = findObservation(seenRoom().map.keyframes[sources[i].keyframe], points[i].id);
       ASSERT_NE(seen, nullptr);
       EXPECT_EQ(points[i].source_pixel, Eigen::Vector2f(seen->measurement.pixel.cast<float>()));
     }

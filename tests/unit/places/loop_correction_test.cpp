@@ -13,8 +13,6 @@
 namespace edgeslam {
 namespace {
 
-constexpr int turn = 24;  // keyframes of a whole turn
-
 bool sortedAndWhole(const Map& map) {
   for (const Keyframe& keyframe : map.keyframes) {
     for (std::size_t i = 1; i < keyframe.observations.size(); ++i) {
@@ -46,7 +44,7 @@ Map firstKeyframes(const Map& map, std::size_t count) {
 class LoopCorrectionTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    truth = new std::vector<Pose>(test::turnAround(turn, 4));
+    truth = new std::vector<Pose>(test::turnAround(test::keyframes_a_turn, 4));
     place = new Map(test::makePlace(7, test::placeCamera(), *truth));
     test::addDrift(0.006, 0.002, *place);
   }
@@ -59,7 +57,7 @@ class LoopCorrectionTest : public testing::Test {
   const Camera camera = test::placeCamera();
 
   LoopCorrection correctionOf(const Map& map) const {
-    const KeyframeId current = turn + 1;
+    const KeyframeId current = test::keyframes_a_turn + 1;
     const LoopVerification loop = verifyLoop(camera, {}, map, current, 1, {}, 1);
     EXPECT_TRUE(loop.accepted) << loop.reason;
     LoopCorrection correction;
@@ -99,9 +97,9 @@ TEST_F(LoopCorrectionTest, OldPointsAreSeenByTheNewSideOnce) {
   Map map = *place;
   const LoopCorrection correction = correctionOf(map);
   EXPECT_GT(correction.observations.size(), 60u);
-  ASSERT_EQ(sharedPoints(map, turn + 1)[1], 0);
+  ASSERT_EQ(sharedPoints(map, test::keyframes_a_turn + 1)[1], 0);
   applyCorrection(correction, map);
-  EXPECT_GT(sharedPoints(map, turn + 1)[1], 30);
+  EXPECT_GT(sharedPoints(map, test::keyframes_a_turn + 1)[1], 30);
   EXPECT_TRUE(sortedAndWhole(map));
 
   Map twice = map;
@@ -115,14 +113,14 @@ TEST_F(LoopCorrectionTest, OldPointsAreSeenByTheNewSideOnce) {
 }
 
 TEST_F(LoopCorrectionTest, AMapThatWentOnGoesAlong) {
-  const Map then = firstKeyframes(*place, turn + 2);
+  const Map then = firstKeyframes(*place, test::keyframes_a_turn + 2);
   const LoopCorrection correction = correctionOf(then);
-  ASSERT_EQ(correction.new_world_S_world.size(), static_cast<std::size_t>(turn + 2));
+  ASSERT_EQ(correction.new_world_S_world.size(), static_cast<std::size_t>(test::keyframes_a_turn + 2));
   Map now = *place;
   now.points.erase(correction.observations.front().observation.point);
   applyCorrection(correction, now);
   const Similarity& last = correction.new_world_S_world.rbegin()->second;
-  for (std::size_t k = turn + 2; k < now.keyframes.size(); ++k) {
+  for (std::size_t k = test::keyframes_a_turn + 2; k < now.keyframes.size(); ++k) {
     const Eigen::Vector3d moved = last * place->keyframes[k].world_T_camera.translation;
     EXPECT_LT((now.keyframes[k].world_T_camera.translation - moved).norm(), 1e-12);
   }
@@ -145,11 +143,12 @@ TEST_F(LoopCorrectionTest, LoopClosingFindsTheReturnAndNothingBefore) {
     for (const JudgedLoop& judged : outcome.considered) {
       EXPECT_FALSE(judged.reason.empty());
       if (!judged.accepted) continue;
-      const int turned = (outcome.current - judged.keyframe + turn / 2) % turn - turn / 2;  // keyframes
+      const int turned = (outcome.current - judged.keyframe + test::keyframes_a_turn / 2) % test::keyframes_a_turn -
+                         test::keyframes_a_turn / 2;  // keyframes
       EXPECT_LT(std::abs(turned), 4);
     }
     if (outcome.correction) {
-      EXPECT_GE(count, static_cast<std::size_t>(turn - 3));
+      EXPECT_GE(count, static_cast<std::size_t>(test::keyframes_a_turn - 3));
       closed = true;
     }
   }
@@ -175,7 +174,7 @@ TEST_F(LoopCorrectionTest, NoDriftIsThatLarge) {
 }
 
 TEST_F(LoopCorrectionTest, LoopsThatContradictEachOtherAreRefused) {
-  const KeyframeId current = turn + 1;
+  const KeyframeId current = test::keyframes_a_turn + 1;
   const auto loopTo = [&](KeyframeId candidate, const Pose& world_T_current) {
     const Pose current_T_candidate = world_T_current.inverse() * place->keyframes[candidate].world_T_camera;
     JudgedLoop loop;
@@ -208,7 +207,7 @@ TEST_F(LoopCorrectionTest, LoopsThatContradictEachOtherAreRefused) {
 // The last keyframes are of a world of their own, with another frame and unit.
 TEST_F(LoopCorrectionTest, JoinsTwoWorldsThatAreOne) {
   Map map = *place;
-  constexpr KeyframeId first_of_young = turn - 3;
+  constexpr KeyframeId first_of_young = test::keyframes_a_turn - 3;
   for (auto& [id, point] : map.points) {
     const bool is_young = point.host >= first_of_young;
     std::vector<KeyframeId>& seen_in = point.seen_in;
@@ -225,10 +224,10 @@ TEST_F(LoopCorrectionTest, JoinsTwoWorldsThatAreOne) {
 
   LoopVerificationOptions of_any_scale;
   of_any_scale.largest_scale = 10;
-  const LoopVerification loop = verifyLoop(camera, {}, map, turn + 2, 2, of_any_scale, 1);
+  const LoopVerification loop = verifyLoop(camera, {}, map, test::keyframes_a_turn + 2, 2, of_any_scale, 1);
   ASSERT_TRUE(loop.accepted || loop.accepted_by_descriptors) << loop.reason;
   LoopCorrection correction;
-  ASSERT_TRUE(computeCorrection(camera, map, turn + 2, 2, loop, {}, {}, correction));
+  ASSERT_TRUE(computeCorrection(camera, map, test::keyframes_a_turn + 2, 2, loop, {}, {}, correction));
   ASSERT_TRUE(correction.join);
   EXPECT_EQ(correction.join->from, 1);
   EXPECT_EQ(correction.join->to, 0);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kThere = 4;          // keyframes of the old side, from 0 on
 constexpr KeyframeId between = 4;  // looks the other way
-constexpr KeyframeId kCurrent = 6, kCandidate = 1;
+constexpr KeyframeId current_here = 6, candidate_there = 1;
 
 // A place seen from nearly the same poses twice, with nothing in common in the map.
 class LoopEvidence : public testing::Test {
@@ -44,7 +44,7 @@ class LoopEvidence : public testing::Test {
   }
 
   LoopVerification verify(const Map& map, const LoopVerificationOptions& options = onlyDescriptors()) const {
-    return verifyLoop(camera, {}, map, kCurrent, kCandidate, options, 1);
+    return verifyLoop(camera, {}, map, current_here, candidate_there, options, 1);
   }
   static LoopVerificationOptions onlyDescriptors() {
     LoopVerificationOptions options;
@@ -96,7 +96,7 @@ TEST_F(LoopEvidence, InliersInOneHalfOfTheImageAreInHalfOfItsParts) {
   };
   const auto seenIn = [&](auto inside) {
     Map map = *place;
-    const Pose camera_T_world = map.keyframes[kCurrent].world_T_camera.inverse();
+    const Pose camera_T_world = map.keyframes[current_here].world_T_camera.inverse();
     for (auto point = map.points.begin(); point != map.points.end();) {
       const Eigen::Vector3d seen = camera_T_world * worldPosition(map, point->second);
       const bool keep = sideOf(point->second) == Side::here || (seen.z() > 0.1 && inside(project(camera, seen)));

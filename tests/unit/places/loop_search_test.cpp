@@ -5,23 +5,22 @@
 
 #include <utility>
 
+#include "unit/geometry/degree.h"
 #include "unit/map/change_each.h"
 #include "unit/places/made_place.h"
 
 namespace edgeslam::test {
 namespace {
 
-constexpr int turn = 24;  // keyframes of a whole turn
-constexpr KeyframeId kCurrent = turn + 3, kCandidate = 2;
-constexpr double degree = M_PI / 180;
+constexpr KeyframeId kCurrent = keyframes_a_turn + 3, kCandidate = 2;
 
-const std::vector<Pose>& truth() {
-  static const std::vector<Pose> poses = turnAround(turn, 5);
+const std::vector<Pose>& trueTurn() {
+  static const std::vector<Pose> poses = turnAround(keyframes_a_turn, 5);
   return poses;
 }
 
 const Map& bareRoom() {
-  static const Map map = makePlace(bare_rooms, placeCamera(), truth());
+  static const Map map = makePlace(bare_rooms, placeCamera(), trueTurn());
   return map;
 }
 
@@ -41,7 +40,7 @@ LoopVerification verify(const Map& map, KeyframeId current, KeyframeId candidate
 constexpr double log_scale_a_step = 0.07 / (kCurrent - kCandidate);
 Map drifted() {
   Map map = bareRoom();
-  addDrift(log_scale_a_step, degree / turn, map);
+  addDrift(log_scale_a_step, degree / keyframes_a_turn, map);
   return map;
 }
 
@@ -50,7 +49,7 @@ TEST(LoopSearch, FindsTheSimilarityOfADriftedReturn) {
   const LoopVerification loop = verify(map, kCurrent, kCandidate);
   ASSERT_TRUE(loop.accepted) << loop.reason;
   EXPECT_NE(loop.reason.find("by search"), std::string::npos);
-  const Pose motion = truth()[kCurrent].inverse() * truth()[kCandidate];
+  const Pose motion = trueTurn()[kCurrent].inverse() * trueTurn()[kCandidate];
   EXPECT_NEAR(loop.current_S_candidate.scale, std::exp(0.07), 0.015);
   EXPECT_LT(rotationAngle(loop.current_S_candidate.rotation, motion.rotation), 0.5 * degree);
   EXPECT_LT((upToScale(loop.current_S_candidate).translation - motion.translation).norm(), 0.04);
@@ -64,7 +63,7 @@ TEST(LoopSearch, FindsTheSimilarityOfADriftedReturn) {
 }
 
 TEST(LoopSearch, OtherWallsAreRefused) {
-  for (KeyframeId candidate = 8; candidate < turn - 5; ++candidate) {
+  for (KeyframeId candidate = 8; candidate < keyframes_a_turn - 5; ++candidate) {
     const LoopVerification loop = verify(bareRoom(), kCurrent, candidate);
     EXPECT_FALSE(loop.accepted) << candidate << ": " << loop.reason;
     EXPECT_FALSE(loop.reason.empty());
@@ -74,7 +73,7 @@ TEST(LoopSearch, OtherWallsAreRefused) {
 // The map of one room, then that of another of the same shape: the same corners of walls, other tiles.
 TEST(LoopSearch, ARoomThatLooksAlikeIsRefused) {
   Map map = bareRoom();
-  const std::vector<Pose> poses(truth().begin(), truth().begin() + 8);
+  const std::vector<Pose> poses(trueTurn().begin(), trueTurn().begin() + 8);
   const Map other = makePlace(bare_rooms + 1, placeCamera(), poses);
   const auto first = static_cast<KeyframeId>(map.keyframes.size());
   constexpr PointId offset = 1000000;
@@ -132,7 +131,7 @@ TEST(LoopSearch, AChangeOfScaleBeyondTheBoundIsRefusedEitherWay) {
 TEST(LoopSearch, TakesThePoseThatShowsMostOfTheOldSide) {
   const Map map = drifted();
   int more = 0;
-  for (const auto& pair : {std::pair{turn + 1, 1}, {turn + 2, 2}, {kCurrent, kCandidate}}) {
+  for (const auto& pair : {std::pair{keyframes_a_turn + 1, 1}, {keyframes_a_turn + 2, 2}, {kCurrent, kCandidate}}) {
     const int current = pair.first, candidate = pair.second;
     const auto found_share = [&](int refined_poses) {
       LoopVerificationOptions options = withoutDescriptors();

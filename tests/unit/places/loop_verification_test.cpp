@@ -9,13 +9,11 @@
 namespace edgeslam {
 namespace {
 
-constexpr int turn = 24;  // keyframes of a whole turn
-
 // A turn of 360 degrees and four keyframes more, from another viewpoint; the drift of its end is known.
 class LoopVerificationTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    truth = new std::vector<Pose>(test::turnAround(turn, 4));
+    truth = new std::vector<Pose>(test::turnAround(test::keyframes_a_turn, 4));
     place = new Map(test::makePlace(7, test::placeCamera(), *truth));
   }
   static void TearDownTestSuite() {
@@ -33,8 +31,8 @@ Map* LoopVerificationTest::place = nullptr;
 TEST_F(LoopVerificationTest, FindsTheSimilarityOfADriftedReturn) {
   Map map = *place;
   test::addDrift(0.01, 0.002, map);
-  const double scale = std::exp(0.01 * (turn + 1));  // of keyframe turn + 1 against keyframe 1
-  const KeyframeId current = turn + 1, candidate = 1;
+  const double scale = std::exp(0.01 * (test::keyframes_a_turn + 1));  // of that keyframe against keyframe 1
+  const KeyframeId current = test::keyframes_a_turn + 1, candidate = 1;
   const LoopVerification loop = verifyLoop(camera, {}, map, current, candidate, {}, 1);
   ASSERT_TRUE(loop.accepted) << loop.reason;
   EXPECT_GE(loop.inliers, loop.needed_inliers);
@@ -53,8 +51,8 @@ TEST_F(LoopVerificationTest, FindsTheSimilarityOfADriftedReturn) {
 }
 
 TEST_F(LoopVerificationTest, OtherWallsAreRefusedWithAReason) {
-  for (KeyframeId candidate = 7; candidate < turn - 4; ++candidate) {
-    const LoopVerification loop = verifyLoop(camera, {}, *place, turn + 1, candidate, {}, 1);
+  for (KeyframeId candidate = 7; candidate < test::keyframes_a_turn - 4; ++candidate) {
+    const LoopVerification loop = verifyLoop(camera, {}, *place, test::keyframes_a_turn + 1, candidate, {}, 1);
     EXPECT_FALSE(loop.accepted) << candidate;
     EXPECT_FALSE(loop.reason.empty());
     EXPECT_LT(loop.descriptor_inliers, 15);
@@ -82,12 +80,12 @@ TEST_F(LoopVerificationTest, AnotherRoomIsRefused) {
 TEST_F(LoopVerificationTest, KeyframesWithoutImagesAreRefused) {
   Map map = *place;
   map.keyframes[1].images = nullptr;
-  EXPECT_FALSE(verifyLoop(camera, {}, map, turn + 1, 1, {}, 1).accepted);
+  EXPECT_FALSE(verifyLoop(camera, {}, map, test::keyframes_a_turn + 1, 1, {}, 1).accepted);
 }
 
 TEST_F(LoopVerificationTest, EachDemandOnDescriptorsRefuses) {
   const auto refused = [&](const LoopVerificationOptions& options) {
-    return !verifyLoop(camera, {}, *place, turn + 1, 1, options, 1).accepted;
+    return !verifyLoop(camera, {}, *place, test::keyframes_a_turn + 1, 1, options, 1).accepted;
   };
   LoopVerificationOptions only_descriptors;
   only_descriptors.search.witnesses = 0;
@@ -110,16 +108,16 @@ TEST_F(LoopVerificationTest, EachDemandOnDescriptorsRefuses) {
 }
 
 TEST_F(LoopVerificationTest, SameSeedSameBits) {
-  const LoopVerification a = verifyLoop(camera, {}, *place, turn + 1, 1, {}, 3),
-                         b = verifyLoop(camera, {}, *place, turn + 1, 1, {}, 3);
+  const LoopVerification a = verifyLoop(camera, {}, *place, test::keyframes_a_turn + 1, 1, {}, 3),
+                         b = verifyLoop(camera, {}, *place, test::keyframes_a_turn + 1, 1, {}, 3);
   EXPECT_EQ(a.reason, b.reason);
   EXPECT_EQ(a.current_S_candidate.scale, b.current_S_candidate.scale);
   EXPECT_EQ(a.current_S_candidate.translation, b.current_S_candidate.translation);
 }
 
 TEST_F(LoopVerificationTest, GuidedMatchesLieWhereTheTruthProjects) {
-  const PlaceView from = placeView(camera, *place, 1, 3), to = placeView(camera, *place, turn + 1, 3);
-  const Pose motion = (*truth)[turn + 1].inverse() * (*truth)[1];
+  const PlaceView from = placeView(camera, *place, 1, 3), to = placeView(camera, *place, test::keyframes_a_turn + 1, 3);
+  const Pose motion = (*truth)[test::keyframes_a_turn + 1].inverse() * (*truth)[1];
   const GuidedMatches guided = matchGuided(camera, *place, from, to, test::asSimilarity(motion), 4, {});
   EXPECT_GT(guided.visible, 100);
   EXPECT_LE(guided.visible_in_both, guided.visible);

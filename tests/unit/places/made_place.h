@@ -168,6 +168,8 @@ inline Map makePlace(std::uint64_t seed, const Camera& camera, const std::vector
   return map;
 }
 
+constexpr int keyframes_a_turn = 24;  // of a whole turn in the tests of loops
+
 // A turn by 360 degrees on a small circle, with `extra` keyframes beyond the first one; looks outwards.
 inline std::vector<Pose> turnAround(int keyframes, int extra) {
   std::vector<Pose> poses;

@@ -3,14 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/geometry/degree.h"
 #include "unit/map/change_each.h"
 #include "unit/places/made_place.h"
 
 namespace edgeslam::test {
 namespace {
 
-constexpr double degree = M_PI / 180;
-constexpr std::uint64_t room = 7;
+constexpr std::uint64_t room_seed = 7;
 
 struct SeenFrame {
   FrameImages images;
@@ -35,7 +35,7 @@ const Map& place() {
   static const Map map = [] {
     std::vector<Pose> poses = turnAround(36, 0);
     poses.resize(10);
-    return makePlace(room, placeCamera(), poses);
+    return makePlace(room_seed, placeCamera(), poses);
   }();
   return map;
 }
@@ -48,11 +48,11 @@ Pose near(KeyframeId keyframe, const Eigen::Vector3d& moved, const Eigen::Vector
 
 RelocalisationResult relocaliseAt(const Pose& pose, const std::optional<Reachable>& reachable = std::nullopt) {
   static const Relocalisation relocalisation = knowing(place());
-  const SeenFrame frame = frameOf(renderRoom(room, placeCamera(), pose));
+  const SeenFrame frame = frameOf(renderRoom(room_seed, placeCamera(), pose));
   return relocalisation.relocalise(place(), frame.images, frame.edges, reachable);
 }
 
-double positionError(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }
+double distanceApart(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }
 double rotationErrorDeg(const Pose& a, const Pose& b) { return rotationAngle(a.rotation, b.rotation) / degree; }
 
 struct View {
@@ -68,7 +68,7 @@ TEST_P(RelocalisationFrom, TheCameraIsFound) {
   const Pose truth = near(GetParam().keyframe, GetParam().moved, GetParam().turned_deg);
   const RelocalisationResult result = relocaliseAt(truth);
   ASSERT_TRUE(result.found) << result.reason;
-  EXPECT_LT(positionError(result.world_T_camera, truth), 0.02);
+  EXPECT_LT(distanceApart(result.world_T_camera, truth), 0.02);
   EXPECT_LT(rotationErrorDeg(result.world_T_camera, truth), 0.4);
   EXPECT_GE(result.evidence.inliers, 30);
   EXPECT_EQ(static_cast<int>(result.matches.size()), result.evidence.inliers);
@@ -124,13 +124,13 @@ TEST(Relocalisation, HiddenPartsMayRefuseItButNotMislead) {
   const Pose truth = near(4, {0.05, 0, 0.05}, {0, 1, 0});
   int found = 0;
   for (const double hidden : {0.2, 0.4, 0.6, 0.8}) {
-    cv::Mat grey = renderRoom(room, placeCamera(), truth);
+    cv::Mat grey = renderRoom(room_seed, placeCamera(), truth);
     grey.colRange(0, static_cast<int>(hidden * grey.cols)).setTo(90);
     const SeenFrame frame = frameOf(grey);
     const RelocalisationResult result = relocalisation.relocalise(place(), frame.images, frame.edges);
     if (!result.found) continue;
     ++found;
-    EXPECT_LT(positionError(result.world_T_camera, truth), 0.03) << hidden;
+    EXPECT_LT(distanceApart(result.world_T_camera, truth), 0.03) << hidden;
   }
   EXPECT_GE(found, 1);
 }
@@ -141,10 +141,10 @@ TEST(Relocalisation, PosesAreInTheWorldFrameAsTheMapHasItNow) {
   const Relocalisation relocalisation = knowing(place());
   for (Keyframe& keyframe : moved.keyframes) keyframe.world_T_camera = correction * keyframe.world_T_camera;
   const Pose truth = near(4, {0.1, 0, 0}, {0, 2, 0});
-  const SeenFrame frame = frameOf(renderRoom(room, placeCamera(), truth));
+  const SeenFrame frame = frameOf(renderRoom(room_seed, placeCamera(), truth));
   const RelocalisationResult result = relocalisation.relocalise(moved, frame.images, frame.edges);
   ASSERT_TRUE(result.found) << result.reason;
-  EXPECT_LT(positionError(result.world_T_camera, correction * truth), 0.02);
+  EXPECT_LT(distanceApart(result.world_T_camera, correction * truth), 0.02);
   EXPECT_LT(rotationErrorDeg(result.world_T_camera, correction * truth), 0.4);
 }
 
@@ -186,7 +186,7 @@ TEST(Relocalisation, WhatRepeatsIsNotGuessed) {
   const Map both = twice(place());
   const Relocalisation relocalisation = knowing(both);
   const Pose truth = near(4, {0.05, 0, 0}, {0, 1, 0});
-  const SeenFrame frame = frameOf(renderRoom(room, placeCamera(), truth));
+  const SeenFrame frame = frameOf(renderRoom(room_seed, placeCamera(), truth));
   const RelocalisationResult result = relocalisation.relocalise(both, frame.images, frame.edges);
   EXPECT_FALSE(result.found);
   EXPECT_NE(result.reason.find("two different poses"), std::string::npos) << result.reason;
@@ -194,12 +194,12 @@ TEST(Relocalisation, WhatRepeatsIsNotGuessed) {
   const RelocalisationResult bounded =
       relocalisation.relocalise(both, frame.images, frame.edges, Reachable{truth.translation, 2});
   ASSERT_TRUE(bounded.found) << bounded.reason;
-  EXPECT_LT(positionError(bounded.world_T_camera, truth), 0.02);
+  EXPECT_LT(distanceApart(bounded.world_T_camera, truth), 0.02);
 }
 
 TEST(Relocalisation, ForgottenKeyframesAreNotFound) {
   Relocalisation relocalisation = knowing(place());
-  const SeenFrame frame = frameOf(renderRoom(room, placeCamera(), near(4, {0, 0, 0}, {0, 0, 0})));
+  const SeenFrame frame = frameOf(renderRoom(room_seed, placeCamera(), near(4, {0, 0, 0}, {0, 0, 0})));
   relocalisation.update(Map());
   const RelocalisationResult result = relocalisation.relocalise(place(), frame.images, frame.edges);
   EXPECT_FALSE(result.found);
@@ -210,14 +210,14 @@ TEST(Relocalisation, ForgottenKeyframesAreNotFound) {
 TEST(Relocalisation, LaterKeyframesAreLeftOutWhereTheyAreInDoubt) {
   const Relocalisation relocalisation = knowing(place());
   const Pose truth = near(4, {0.02, 0, 0}, {0, 0, 0});
-  const SeenFrame frame = frameOf(renderRoom(room, placeCamera(), truth));
+  const SeenFrame frame = frameOf(renderRoom(room_seed, placeCamera(), truth));
   const RelocalisationResult all = relocalisation.relocalise(place(), frame.images, frame.edges);
   ASSERT_TRUE(all.found) << all.reason;
   const RelocalisationResult before =
       relocalisation.relocalise(place(), frame.images, frame.edges, std::nullopt, 1, all.keyframe - 1);
   ASSERT_TRUE(before.found) << before.reason;  // by a neighbour
   EXPECT_LT(before.keyframe, all.keyframe);
-  EXPECT_LT(positionError(before.world_T_camera, truth), 0.02);
+  EXPECT_LT(distanceApart(before.world_T_camera, truth), 0.02);
   const RelocalisationResult none = relocalisation.relocalise(place(), frame.images, frame.edges, std::nullopt, 1, -1);
   EXPECT_FALSE(none.found);
   EXPECT_EQ(none.reason, "no keyframe looks like this frame");
@@ -228,11 +228,11 @@ TEST(Relocalisation, KeyframesWithoutImagesArePassedOver) {
   map.keyframes[4].images = nullptr;
   const Relocalisation relocalisation = knowing(map);
   const Pose truth = near(4, {0.05, 0, 0}, {0, 0, 0});
-  const SeenFrame frame = frameOf(renderRoom(room, placeCamera(), truth));
+  const SeenFrame frame = frameOf(renderRoom(room_seed, placeCamera(), truth));
   const RelocalisationResult result = relocalisation.relocalise(map, frame.images, frame.edges);
   ASSERT_TRUE(result.found) << result.reason;
   EXPECT_NE(result.keyframe, 4);
-  EXPECT_LT(positionError(result.world_T_camera, truth), 0.02);
+  EXPECT_LT(distanceApart(result.world_T_camera, truth), 0.02);
 }
 
 TEST(ReachableFrom, GrowsWithTimeAndNeverBelowAStep) {

@@ -5,12 +5,11 @@
 
 #include <opencv2/core.hpp>
 
+#include "unit/geometry/degree.h"
 #include "unit/places/made_place.h"
 
 namespace edgeslam::test {
 namespace {
-
-constexpr double degree = M_PI / 180;
 
 Thumbnail thumbnailAt(const Pose& pose, std::uint64_t room = 7) {
   return makeThumbnail(buildPyramid(renderRoom(room, placeCamera(), pose), 4));

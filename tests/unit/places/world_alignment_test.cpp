@@ -8,7 +8,7 @@
 namespace edgeslam {
 namespace {
 
-const Similarity truth{2.5, rotationExp({0.3, -1.2, 0.5}), {4, -2, 7}};
+const Similarity true_alignment{2.5, rotationExp({0.3, -1.2, 0.5}), {4, -2, 7}};
 
 // Along a curve, with errors of so much of the scene's distance (which is 5), and wrong ones among them.
 std::vector<FoundInBoth> cameras(int right, int wrong, double error = 0, double length = 4) {
@@ -18,7 +18,7 @@ std::vector<FoundInBoth> cameras(int right, int wrong, double error = 0, double 
   for (int i = 0; i < right + wrong; ++i) {
     const double along = length * i / (right + wrong);
     const Pose from{rotationExp({0, 0.2 * along, 0}), {along, 0.3 * std::sin(along), 0.1 * along}};
-    FoundInBoth camera{from, moved(truth, from), 5};
+    FoundInBoth camera{from, moved(true_alignment, from), 5};
     const Eigen::Vector3d off(any(random), any(random), any(random));
     if (i < right) {
       camera.to_T_camera.translation += 5 * error * off;
@@ -31,9 +31,9 @@ std::vector<FoundInBoth> cameras(int right, int wrong, double error = 0, double 
 }
 
 void expectTruth(const Similarity& found, double error) {
-  EXPECT_NEAR(found.scale, truth.scale, error * truth.scale);
-  EXPECT_LT(rotationAngle(found.rotation, truth.rotation), error);
-  EXPECT_LT((found.translation - truth.translation).norm(), 10 * error);
+  EXPECT_NEAR(found.scale, true_alignment.scale, error * true_alignment.scale);
+  EXPECT_LT(rotationAngle(found.rotation, true_alignment.rotation), error);
+  EXPECT_LT((found.translation - true_alignment.translation).norm(), 10 * error);
 }
 
 TEST(AlignWorlds, FindsTheSimilarityThatMostCamerasSay) {
@@ -71,7 +71,7 @@ TEST(AlignWorlds, AStraightWayIsEnough) {
   std::vector<FoundInBoth> found;
   for (int i = 0; i < 6; ++i) {
     const Pose from{rotationExp({0.1, 0.2, 0}), {0.6 * i, 0, 0}};
-    found.push_back({from, moved(truth, from), 5});
+    found.push_back({from, moved(true_alignment, from), 5});
   }
   std::size_t agreeing = 0;
   const auto alignment = alignWorlds(found, {}, agreeing);
