@@ -57,21 +57,22 @@ int posix_memalign(void** memory, size_t alignment, size_t size) {
 namespace edgeslam {
 namespace {
 
-const cv::Size kSize(333, 241);
+const cv::Size varied_image_size(333, 241);
 
 // Of all kinds, an ordinary one first.
 std::vector<cv::Mat> variedImages() {
-  std::vector<cv::Mat> images = {withNoise(renderTexture(kSize, 1), 1, 1), cv::Mat(kSize, CV_8U, cv::Scalar(0)),
-                                 cv::Mat(kSize, CV_8U, cv::Scalar(255)),
-                                 withNoise(cv::Mat(kSize, CV_8U, cv::Scalar(128)), 60, 2),
-                                 withNoise(cv::Mat(kSize, CV_8U, cv::Scalar(128)), 1e4, 3)};
-  for (const int side : {1, 2, 3, 4, 6, 9, 40}) images.push_back(renderCheckerboard(kSize, side));
+  std::vector<cv::Mat> images = {withNoise(renderTexture(varied_image_size, 1), 1, 1),
+                                 cv::Mat(varied_image_size, CV_8U, cv::Scalar(0)),
+                                 cv::Mat(varied_image_size, CV_8U, cv::Scalar(255)),
+                                 withNoise(cv::Mat(varied_image_size, CV_8U, cv::Scalar(128)), 60, 2),
+                                 withNoise(cv::Mat(varied_image_size, CV_8U, cv::Scalar(128)), 1e4, 3)};
+  for (const int side : {1, 2, 3, 4, 6, 9, 40}) images.push_back(renderCheckerboard(varied_image_size, side));
   for (const int period : {2, 4, 5, 6, 8}) {  // stripes: more edges than there is room for
-    cv::Mat stripes(kSize, CV_8U);
-    for (int x = 0; x < kSize.width; ++x) stripes.col(x).setTo(2 * x / period % 2 == 0 ? 255 : 0);
+    cv::Mat stripes(varied_image_size, CV_8U);
+    for (int x = 0; x < varied_image_size.width; ++x) stripes.col(x).setTo(2 * x / period % 2 == 0 ? 255 : 0);
     images.push_back(stripes);
   }
-  for (unsigned seed = 2; seed < 8; ++seed) images.push_back(renderTexture(kSize, seed));
+  for (unsigned seed = 2; seed < 8; ++seed) images.push_back(renderTexture(varied_image_size, seed));
   return images;
 }
 
@@ -95,7 +96,7 @@ TEST(Allocation, NoneOnTheWayToEdgesAndPointsAfterTheFirstImage) {
   const PointSpread point_options;
   ImagePyramid pyramid;
   EdgeWorkspace edge_workspace;
-  EdgeMap edges = makeEdgeMap(kSize);
+  EdgeMap edges = makeEdgeMap(varied_image_size);
   PointChoiceWorkspace point_workspace;
   std::vector<ChosenPoint> chosen;
   std::vector<Eigen::Vector2f> occupied;
@@ -132,10 +133,10 @@ TEST(Allocation, AMapMadeBeforehandIsFilledWithoutAny) {
   if (!EDGESLAM_COUNTS_ALLOCATIONS) GTEST_SKIP() << "not under this sanitizer";
   const std::vector<cv::Mat> images = variedImages();
   EdgeWorkspace workspace;
-  EdgeMap first = makeEdgeMap(kSize);
+  EdgeMap first = makeEdgeMap(varied_image_size);
   detectEdges(images[0], {}, workspace, first);
   for (const cv::Mat& image : images) {
-    EdgeMap edges = makeEdgeMap(kSize);
+    EdgeMap edges = makeEdgeMap(varied_image_size);
     EXPECT_EQ(allocationsOf([&] { detectEdges(image, {}, workspace, edges); }), 0);
   }
 }

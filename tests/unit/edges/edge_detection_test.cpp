@@ -12,7 +12,7 @@ namespace edgeslam {
 namespace {
 
 constexpr double kDegrees = 180 / M_PI;
-const cv::Size kSize(121, 101);
+const cv::Size line_image_size(121, 101);
 
 bool nearBorder(const EdgePoint& point, const cv::Size& size, float margin = 8) {
   return point.pixel.x() < margin || point.pixel.y() < margin ||
@@ -34,9 +34,9 @@ LineErrors measureLines(double noise, double dark, double bright) {
   for (double degrees = 0; degrees < 360; degrees += 11.25) {
     for (const double shift : {0.0, 0.3, 0.5}) {
       const Line line = lineThrough(60 + shift, 50, degrees);
-      const EdgeMap edges = detectEdges(withNoise(renderLine(kSize, line, dark, bright), noise, seed++), {});
+      const EdgeMap edges = detectEdges(withNoise(renderLine(line_image_size, line, dark, bright), noise, seed++), {});
       for (const EdgePoint& point : edges.points) {
-        if (nearBorder(point, kSize)) continue;
+        if (nearBorder(point, line_image_size)) continue;
         const double distance = line.distance(point.pixel.x(), point.pixel.y());
         const Eigen::Vector2d normal = point.normal.cast<double>();
         const double cross = line.normal.x() * normal.y() - line.normal.y() * normal.x();
@@ -72,12 +72,12 @@ TEST(EdgeDetection, NoiseMovesEdgesLittle) {
 TEST(EdgeDetection, NormalPointsFromDarkToBrightWithTheGradientAcross) {
   for (const double degrees : {0.0, 30.0, 120.0, 225.0, 300.0}) {
     const Line line = lineThrough(60.2, 50.1, degrees);
-    const EdgeMap edges = detectEdges(renderLine(kSize, line, 60, 180), {});
+    const EdgeMap edges = detectEdges(renderLine(line_image_size, line, 60, 180), {});
     ASSERT_FALSE(edges.points.empty());
     // A step of 120 grey values under the lens' and the narrower Gaussian.
     const double expected = 120 / (std::sqrt(2 * M_PI) * std::hypot(EdgeOptions().sigma, 0.6));
     for (const EdgePoint& point : edges.points) {
-      if (nearBorder(point, kSize)) continue;
+      if (nearBorder(point, line_image_size)) continue;
       EXPECT_NEAR(point.normal.norm(), 1, 1e-5);
       EXPECT_GT(point.normal.cast<double>().dot(line.normal), 0.99);
       EXPECT_NEAR(point.gradient, expected, 0.1 * expected);
@@ -88,7 +88,7 @@ TEST(EdgeDetection, NormalPointsFromDarkToBrightWithTheGradientAcross) {
 TEST(EdgeDetection, LineIsOneUnbrokenChainOnePixelWide) {
   for (double degrees = 0; degrees < 360; degrees += 7) {
     const Line line = lineThrough(60.4, 50.3, degrees);
-    const EdgeMap edges = detectEdges(renderLine(kSize, line), {});
+    const EdgeMap edges = detectEdges(renderLine(line_image_size, line), {});
     EXPECT_EQ(edges.chain_count, 1) << degrees;
     for (size_t i = 0; i < edges.points.size(); ++i) {
       for (size_t j = i + 1; j < edges.points.size(); ++j) {
@@ -107,11 +107,11 @@ TEST(EdgeDetection, ThinLineGivesBothItsSidesUnbroken) {
   for (const double degrees : {3.0, 45.0, 80.0}) {
     const Line line = lineThrough(60.4, 50.3, degrees);
     const cv::Mat image = renderEdge(
-        kSize, [&](double x, double y) { return std::abs(line.distance(x, y)) - 1.0; }, 60, 120);
+        line_image_size, [&](double x, double y) { return std::abs(line.distance(x, y)) - 1.0; }, 60, 120);
     const EdgeMap edges = detectEdges(image, {});
     EXPECT_EQ(edges.chain_count, 2) << degrees;
     for (const EdgePoint& point : edges.points) {
-      if (nearBorder(point, kSize)) continue;
+      if (nearBorder(point, line_image_size)) continue;
       const double distance = line.distance(point.pixel.x(), point.pixel.y());
       EXPECT_NEAR(std::abs(distance), 2.2, 0.2);
       EXPECT_GT(distance * point.normal.cast<double>().dot(line.normal), 0);
@@ -143,7 +143,7 @@ TEST(EdgeDetection, ContrastAndBrightnessLeaveEdgesWhereTheyAre) {
 
 TEST(EdgeDetection, DiscIsOneClosedChain) {
   const Eigen::Vector2d centre(60.3, 49.8);
-  const EdgeMap edges = detectEdges(renderDisc(kSize, centre, 30), {});
+  const EdgeMap edges = detectEdges(renderDisc(line_image_size, centre, 30), {});
   ASSERT_EQ(edges.chain_count, 1);
   int at = 0;
   for (size_t i = 0; i < edges.points.size(); ++i) {
@@ -164,7 +164,7 @@ TEST(EdgeDetection, ImagesWithoutEdgesGiveNone) {
   EXPECT_TRUE(detectEdges(withNoise(cv::Mat(101, 121, CV_8U, cv::Scalar(128)), 1, 3), {}).points.empty());
   const Line smooth = lineThrough(60, 50, 20);
   const cv::Mat shading = renderEdge(
-      kSize, [&](double x, double y) { return smooth.distance(x, y); }, 100, 140, 30);
+      line_image_size, [&](double x, double y) { return smooth.distance(x, y); }, 100, 140, 30);
   EXPECT_TRUE(detectEdges(shading, {}).points.empty());
 }
 
@@ -249,7 +249,7 @@ TEST(NearestEdgePoint, AgreesWithSearchingAllPoints) {
 
 TEST(NearestEdgePoint, FindsNothingInAnEmptyMapOrAtNoPlace) {
   EXPECT_EQ(nearestEdgePoint({}, {5, 5}, {1, 0}, 3, -1), -1);
-  const EdgeMap edges = detectEdges(renderLine(kSize, lineThrough(60, 50, 0)), {});
+  const EdgeMap edges = detectEdges(renderLine(line_image_size, lineThrough(60, 50, 0)), {});
   EXPECT_EQ(nearestEdgePoint(edges, {std::nanf(""), 5}, {1, 0}, 3, -1), -1);
   EXPECT_EQ(nearestEdgePoint(edges, {1e30F, -1e30F}, {1, 0}, 3, -1), -1);
   EXPECT_EQ(nearestEdgePoint(edges, {20, 50}, {1, 0}, 3, -1), -1);

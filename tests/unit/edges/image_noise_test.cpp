@@ -12,40 +12,33 @@
 namespace edgeslam {
 namespace {
 
-const cv::Size size{320, 240};
-
-cv::Mat flat(int grey) { return cv::Mat(size, CV_8U, cv::Scalar(grey)); }
-
-// Half the variance of a pixel: a central difference is half the difference of two.
-double gradientVariance(double sigma) { return 0.5 * sigma * sigma; }
-
 TEST(ImageNoise, OfAFlatImageIsThatOfItsPixels) {
   for (const double sigma : {1.0, 2.0, 4.0, 7.0}) {
-    EXPECT_NEAR(gradientNoise(withNoise(flat(120), sigma, 3)) / gradientVariance(sigma), 1, 0.15) << sigma;
+    EXPECT_NEAR(gradientNoise(withNoise(flatDrawing(120), sigma, 3)) / gradientVariance(sigma), 1, 0.15) << sigma;
   }
 }
 
 TEST(ImageNoise, EdgesAndTextureOfAThirdOfTheImageHardlyCount) {
-  cv::Mat image = renderLine(size, lineThrough(160, 120, 30));
+  cv::Mat image = renderLine(drawing_size, lineThrough(160, 120, 30));
   renderTexture({107, 240}, 1).copyTo(image(cv::Rect(0, 0, 107, 240)));
   EXPECT_LT(gradientNoise(image), 0.1);
   EXPECT_NEAR(gradientNoise(withNoise(image, 4, 5)) / gradientVariance(4), 1, 0.5);
 }
 
 TEST(ImageNoise, IsNothingWhereGreyValuesOnlySlope) {
-  cv::Mat slope(size, CV_8U);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) slope.at<uint8_t>(y, x) = static_cast<uint8_t>((x + y) / 3);
+  cv::Mat slope(drawing_size, CV_8U);
+  for (int y = 0; y < drawing_size.height; ++y) {
+    for (int x = 0; x < drawing_size.width; ++x) slope.at<uint8_t>(y, x) = static_cast<uint8_t>((x + y) / 3);
   }
   EXPECT_LT(gradientNoise(slope), 0.3);
-  EXPECT_LT(gradientNoise(flat(0)), 0.02);
+  EXPECT_LT(gradientNoise(flatDrawing(0)), 0.02);
 }
 
 TEST(ImageNoise, IsBoundedWhateverTheImage) {
-  EXPECT_EQ(gradientNoise(withNoise(flat(128), 60, 1)), 32);
-  cv::Mat chequered(size, CV_8U);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) chequered.at<uint8_t>(y, x) = (x + y) % 2 == 0 ? 255 : 0;
+  EXPECT_EQ(gradientNoise(withNoise(flatDrawing(128), 60, 1)), 32);
+  cv::Mat chequered(drawing_size, CV_8U);
+  for (int y = 0; y < drawing_size.height; ++y) {
+    for (int x = 0; x < drawing_size.width; ++x) chequered.at<uint8_t>(y, x) = (x + y) % 2 == 0 ? 255 : 0;
   }
   EXPECT_EQ(gradientNoise(chequered), 32);
   EXPECT_EQ(gradientNoise(cv::Mat()), 0);
@@ -55,7 +48,7 @@ TEST(ImageNoise, IsBoundedWhateverTheImage) {
 }
 
 TEST(ImageNoise, WhatIsMaskedDoesNotCount) {
-  cv::Mat image = withNoise(flat(120), 3, 4), mask_image(size, CV_8U, cv::Scalar(255));
+  cv::Mat image = withNoise(flatDrawing(120), 3, 4), mask_image(drawing_size, CV_8U, cv::Scalar(255));
   image.rowRange(0, 150).setTo(7);
   mask_image.rowRange(0, 150).setTo(0);
   const auto mask = makeCameraMask(mask_image);

@@ -12,17 +12,10 @@
 namespace edgeslam {
 namespace {
 
-const cv::Size size{320, 240};
-
-cv::Mat flat(int grey) { return cv::Mat(size, CV_8U, cv::Scalar(grey)); }
-
-// Half the variance of a pixel: a central difference is half the difference of two.
-double gradientVariance(double sigma) { return 0.5 * sigma * sigma; }
-
 TEST(PointAccuracy, OnlyWhatIsMoreThanUsualIsAdded) {
   const PointAccuracyOptions usual;
-  EXPECT_EQ(accuracyIn(withNoise(flat(120), 2, 1), usual).excess_noise, 0);
-  const PointAccuracy dim = accuracyIn(withNoise(flat(120), 5, 1), usual);
+  EXPECT_EQ(accuracyIn(withNoise(flatDrawing(120), 2, 1), usual).excess_noise, 0);
+  const PointAccuracy dim = accuracyIn(withNoise(flatDrawing(120), 5, 1), usual);
   EXPECT_NEAR(dim.excess_noise, gradientVariance(5) - usual.noise, 1.5);
   EXPECT_EQ(dim.options.noise, usual.noise);
 }
@@ -35,13 +28,13 @@ double cornerShare(const cv::Mat& image, const PointAccuracy& accuracy) {
 }
 
 TEST(PointAccuracy, InDimLightAStraightEdgeIsNotCornerLike) {
-  const cv::Mat dim = withNoise(renderLine(size, lineThrough(160, 120, 20), 50, 85), 5, 2);
+  const cv::Mat dim = withNoise(renderLine(drawing_size, lineThrough(160, 120, 20), 50, 85), 5, 2);
   EXPECT_GT(cornerShare(dim, {}), 0.8) << "without the image's noise";
   EXPECT_LT(cornerShare(dim, accuracyIn(dim, {})), 0.2);
 }
 
 TEST(PointAccuracy, InDimLightACornerIsStillOne) {
-  const cv::Mat board = withNoise(renderCheckerboard(size, 40), 5, 2);
+  const cv::Mat board = withNoise(renderCheckerboard(drawing_size, 40), 5, 2);
   const PointAccuracy accuracy = accuracyIn(board, {});
   EXPECT_GT(accuracy.excess_noise, 5);
   for (const ChosenPoint& point : choosePoints(board, detectEdges(board, {}), {}, PointSpread(), accuracy)) {

@@ -12,16 +12,24 @@
 
 namespace edgeslam {
 
-// Of drawn images of 320 x 240 px: what is straight in space is straight in them.
+inline const cv::Size drawing_size{320, 240};  // [px]
+
+// Of drawn images of that size: what is straight in space is straight in them.
 inline Camera cameraOfDrawing() {
   Camera camera;
-  camera.width = 320;
-  camera.height = 240;
+  camera.width = drawing_size.width;
+  camera.height = drawing_size.height;
   camera.fx = camera.fy = 300;
   camera.cx = 159.5;
   camera.cy = 119.5;
   return camera;
 }
+
+inline cv::Mat flatDrawing(int grey) { return cv::Mat(drawing_size, CV_8U, cv::Scalar(grey)); }
+
+// Of an image whose pixels have noise of that standard deviation, half of theirs: a central difference is half the
+// difference of two.
+inline double gradientVariance(double sigma) { return 0.5 * sigma * sigma; }
 
 // `signed_distance(x, y)` to the edge [px], positive on the bright side.
 template <typename SignedDistance>

@@ -33,17 +33,17 @@ struct MadeEdges {
   }
 };
 
-const Eigen::Vector2f right(1, 0), down(0, 1);
+const Eigen::Vector2f rightwards(1, 0), downwards(0, 1);
 
 using Kept = std::vector<bool>;
 
 // Points next to each other across their edge, with these offsets from their pixels' centres.
 Kept keptOfNeighbours(const std::vector<float>& offsets, bool to_rows) {
   MadeEdges edges;
-  edges.add(2, 15, right, 0.3f);  // far away: that one point has the number 0 must not matter
+  edges.add(2, 15, rightwards, 0.3f);  // far away: that one point has the number 0 must not matter
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     const int at = 5 + static_cast<int>(i);
-    edges.add(to_rows ? at : 5, to_rows ? 5 : at, to_rows ? right : down, offsets[i]);
+    edges.add(to_rows ? at : 5, to_rows ? 5 : at, to_rows ? rightwards : downwards, offsets[i]);
   }
   Kept kept = edges.kept();
   EXPECT_TRUE(kept.front());
@@ -72,17 +72,17 @@ TEST(Thinning, OneThatWasTakenOutTakesNoOtherOut) {
 
 TEST(Thinning, NeighboursAlongTheEdgeStay) {
   MadeEdges edges;
-  for (int i = 0; i < 6; ++i) edges.add(5, 4 + i, right, 0.1f * static_cast<float>(i));
-  for (int i = 0; i < 6; ++i) edges.add(10 + i, 12, down, -0.1f * static_cast<float>(i));
+  for (int i = 0; i < 6; ++i) edges.add(5, 4 + i, rightwards, 0.1f * static_cast<float>(i));
+  for (int i = 0; i < 6; ++i) edges.add(10 + i, 12, downwards, -0.1f * static_cast<float>(i));
   EXPECT_EQ(edges.kept(), Kept(12, true));
 }
 
 TEST(Thinning, PointsWithAPixelBetweenThemStay) {
   MadeEdges edges;
-  edges.add(5, 5, right, 0.1f);
-  edges.add(7, 5, right, 0.4f);
-  edges.add(10, 10, down, 0.1f);
-  edges.add(10, 12, down, 0.4f);
+  edges.add(5, 5, rightwards, 0.1f);
+  edges.add(7, 5, rightwards, 0.4f);
+  edges.add(10, 10, downwards, 0.1f);
+  edges.add(10, 12, downwards, 0.4f);
   EXPECT_EQ(edges.kept(), Kept(4, true));
 }
 
@@ -117,7 +117,7 @@ TEST(Thinning, LeavesEdgesOnePixelWideAndTakesNoMoreThanThat) {
     MadeEdges edges;
     for (int y = 3; y < 17; ++y) {
       for (int x = 3; x < 17; ++x) {
-        if (random() % 3 != 0) edges.add(x, y, to_rows ? right : down, offset(random));
+        if (random() % 3 != 0) edges.add(x, y, to_rows ? rightwards : downwards, offset(random));
       }
     }
     const cv::Mat before = edges.index.clone();

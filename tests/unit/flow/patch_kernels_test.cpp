@@ -12,13 +12,13 @@
 namespace edgeslam {
 namespace {
 
-constexpr std::ptrdiff_t step = 77;  // odd: rows are not aligned
+constexpr std::ptrdiff_t row_step = 77;  // odd: rows are not aligned
 constexpr int rows = 40;
 
 enum class Content { random, flat, extremes };
 
 std::vector<std::uint8_t> pixels(Content content, std::uint32_t seed) {
-  std::vector<std::uint8_t> values(static_cast<std::size_t>(step * rows));
+  std::vector<std::uint8_t> values(static_cast<std::size_t>(row_step * rows));
   std::mt19937 random(seed);
   for (std::uint8_t& value : values) {
     value = content == Content::random ? static_cast<std::uint8_t>(random() % 256)
@@ -42,7 +42,7 @@ std::vector<Case> cases() {
   for (const Content content : {Content::random, Content::flat, Content::extremes}) {
     for (int i = 0; i < 20; ++i) {
       Case one{pixels(content, random()), pixels(content, random()), bilinearWeights(share(random), share(random)), 0};
-      one.corner = step * static_cast<std::ptrdiff_t>(random() % 10) + static_cast<std::ptrdiff_t>(random() % 20);
+      one.corner = row_step * static_cast<std::ptrdiff_t>(random() % 10) + static_cast<std::ptrdiff_t>(random() % 20);
       made.push_back(one);
     }
   }
@@ -57,8 +57,8 @@ TEST(PatchKernels, GiveTheReferencesBitsOnEveryInstructionSet) {
     for (const Case& one : all) {
       for (const int side : {1, 3, 7, 8, 11, 13, 15}) {
         SampledWindow window{}, window_reference{};
-        sampleWindow(one.image.data() + one.corner, step, one.weights, side, window);
-        sampleWindowReference(one.image.data() + one.corner, step, one.weights, side, window_reference);
+        sampleWindow(one.image.data() + one.corner, row_step, one.weights, side, window);
+        sampleWindowReference(one.image.data() + one.corner, row_step, one.weights, side, window_reference);
         ASSERT_EQ(window, window_reference) << side;
 
         PatchSamples patch{}, patch_reference{};
@@ -76,11 +76,11 @@ TEST(PatchKernels, GiveTheReferencesBitsOnEveryInstructionSet) {
           ASSERT_EQ(sums.*sum, reference.*sum) << side;
         }
         const std::uint8_t* other = one.other.data() + one.corner;
-        ASSERT_TRUE(comparePatch(patch, other, step, one.weights) ==
-                    comparePatchReference(patch, other, step, one.weights))
+        ASSERT_TRUE(comparePatch(patch, other, row_step, one.weights) ==
+                    comparePatchReference(patch, other, row_step, one.weights))
             << side;
-        ASSERT_TRUE(correlatePatch(patch, other, step, one.weights) ==
-                    correlatePatchReference(patch, other, step, one.weights))
+        ASSERT_TRUE(correlatePatch(patch, other, row_step, one.weights) ==
+                    correlatePatchReference(patch, other, row_step, one.weights))
             << side;
       }
     }
@@ -90,7 +90,7 @@ TEST(PatchKernels, GiveTheReferencesBitsOnEveryInstructionSet) {
 TEST(PatchKernels, SumsOfTheLargestContrastDoNotOverflow) {
   for (const Case& one : cases()) {
     SampledWindow window{};
-    sampleWindow(one.image.data() + one.corner, step, one.weights, largest_patch_side, window);
+    sampleWindow(one.image.data() + one.corner, row_step, one.weights, largest_patch_side, window);
     PatchSamples patch{};
     const PatchSums sums = makePatchSamples(window, largest_patch_side, patch);
     std::int64_t xx = 0, grey_grey = 0;
