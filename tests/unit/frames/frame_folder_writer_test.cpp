@@ -10,13 +10,13 @@
 namespace edgeslam {
 namespace {
 
-const cv::Mat image(24, 32, CV_8U, cv::Scalar(50));
+const cv::Mat written_image(24, 32, CV_8U, cv::Scalar(50));
 
 TEST(FrameFolderWriter, IsReadableWhileItIsWritten) {
   const TemporaryFolder folder;
   FrameFolderWriter writer(folder.path("r"), std::nullopt, "a camera", 0);
   for (int i = 1; i <= 3; ++i) {
-    EXPECT_EQ(writer.write(i * 1'000'000'007LL, image), "");
+    EXPECT_EQ(writer.write(i * 1'000'000'007LL, written_image), "");
     const std::unique_ptr<FrameSource> source = openFrames(folder.path("r"));
     EXPECT_EQ(source->size(), i);
     EXPECT_FALSE(source->camera());
@@ -44,9 +44,9 @@ TEST(FrameFolderWriter, LeavesTheDiskItsFreeSpace) {
 TEST(FrameFolderWriter, TimeStampsGrow) {
   const TemporaryFolder folder;
   FrameFolderWriter writer(folder.path("r"), std::nullopt, "", 0);
-  EXPECT_EQ(writer.write(100, image), "");
-  EXPECT_NE(writer.write(100, image), "");
-  EXPECT_NE(writer.write(200, image), "") << "writes on after a problem";
+  EXPECT_EQ(writer.write(100, written_image), "");
+  EXPECT_NE(writer.write(100, written_image), "");
+  EXPECT_NE(writer.write(200, written_image), "") << "writes on after a problem";
   EXPECT_EQ(openFrames(folder.path("r"))->size(), 1);
 }
 

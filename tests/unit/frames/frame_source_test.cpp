@@ -5,6 +5,7 @@
 
 #include "frames/folder_source.h"
 #include "unit/files/temporary_folder.h"
+#include "unit/frames/all_frames.h"
 
 namespace edgeslam {
 namespace {
@@ -18,14 +19,8 @@ void writeImage(const TemporaryFolder& folder, const std::string& name, int grey
   folder.write(name, std::string(bytes.begin(), bytes.end()));
 }
 
-std::vector<Frame> readAll(FrameSource& source) {
-  std::vector<Frame> frames;
-  while (std::optional<Frame> frame = source.next()) frames.push_back(*frame);
-  return frames;
-}
-
 template <typename... Texts>
-void expectRefused(const TemporaryFolder& folder, const Texts&... texts) {
+void expectFolderRefused(const TemporaryFolder& folder, const Texts&... texts) {
   expectInputError([&] { openFrames(folder.path()); }, texts...);
 }
 
@@ -114,24 +109,24 @@ TEST(FrameSource, NamesThatAreNoTimeStampsAreRefused) {
   for (const char* name : {"000001.png", "frame.png", "12.png", "img_1.5.png"}) {
     const TemporaryFolder folder;
     writeImage(folder, name, 5);
-    expectRefused(folder, name, "seconds with a decimal point", "nanoseconds");
+    expectFolderRefused(folder, name, "seconds with a decimal point", "nanoseconds");
   }
   const TemporaryFolder folder;
   writeImage(folder, "1.5.png", 5);
   writeImage(folder, "1.50.png", 5);
-  expectRefused(folder, "1.5.png", "1.50.png", "same time stamp");
+  expectFolderRefused(folder, "1.5.png", "1.50.png", "same time stamp");
 }
 
 TEST(FrameSource, TimeStampsThatGoBackOrRepeatAreToldByLine) {
   const TemporaryFolder folder;
   folder.write("rgb.txt", "# c\n1.5 a.png\n1.25 b.png\n");
-  expectRefused(folder, "rgb.txt:3", "lies before", "1.25");
+  expectFolderRefused(folder, "rgb.txt:3", "lies before", "1.25");
   folder.write("rgb.txt", "1.5 a.png\n1.50 b.png\n");
-  expectRefused(folder, "rgb.txt:2", "same");
+  expectFolderRefused(folder, "rgb.txt:2", "same");
   const TemporaryFolder euroc;
   std::filesystem::create_directories(euroc.path("cam0/data"));
   euroc.write("cam0/data.csv", "#t\n2000,a.png\n1000,b.png\n");
-  expectRefused(euroc, "data.csv:3", "lies before");
+  expectFolderRefused(euroc, "data.csv:3", "lies before");
 }
 
 TEST(FrameSource, ALastLineThatWasTornIsLeftOut) {
@@ -150,15 +145,15 @@ TEST(FrameSource, ALastLineThatWasTornIsLeftOut) {
 TEST(FrameSource, BadListsAreToldByLine) {
   const TemporaryFolder folder;
   folder.write("rgb.txt", "# only comments\n\n");
-  expectRefused(folder, "rgb.txt", "lists no frames");
+  expectFolderRefused(folder, "rgb.txt", "lists no frames");
   folder.write("rgb.txt", "1.5\n");
-  expectRefused(folder, "rgb.txt:1", "time-stamp file");
+  expectFolderRefused(folder, "rgb.txt:1", "time-stamp file");
   folder.write("rgb.txt", "nan a.png\n");
-  expectRefused(folder, "rgb.txt:1", "nan", "time stamp");
+  expectFolderRefused(folder, "rgb.txt:1", "nan", "time stamp");
   folder.write("rgb.txt", std::string("\0\xff\x01 \x02", 5));
-  expectRefused(folder, "rgb.txt:1");
+  expectFolderRefused(folder, "rgb.txt:1");
   folder.write("rgb.txt", "1.5 rgb/\x1b[31m.png\n");
-  expectRefused(folder, "rgb.txt:1", "control characters");
+  expectFolderRefused(folder, "rgb.txt:1", "control characters");
 }
 
 TEST(FrameSource, ASingleBadFrameIsAProblemAndTheNextOneIsRead) {
@@ -208,14 +203,14 @@ TEST(FrameSource, FindsEveryKindOfCalibration) {
   folder.write("camera.yaml", kCamera);
   EXPECT_EQ(openFrames(folder.path())->camera()->fx, 30) << "our own comes first";
   folder.write("camera.yaml", "width: nan\n");
-  expectRefused(folder, "camera.yaml:1", "width");
+  expectFolderRefused(folder, "camera.yaml:1", "width");
 }
 
 TEST(FrameSource, WhatHoldsNoFramesIsRefused) {
   const TemporaryFolder folder;
-  expectRefused(folder, "empty folder", "rgb.txt");
+  expectFolderRefused(folder, "empty folder", "rgb.txt");
   folder.write("notes.txt", "no frames");
-  expectRefused(folder, "holds no frames", "rgb.txt");
+  expectFolderRefused(folder, "holds no frames", "rgb.txt");
   expectInputError([&] { openFrames(folder.path("none")); }, "none", "no such folder or video");
   expectInputError([&] { openFrames(folder.path("notes.txt")); }, "notes.txt", "expected a folder");
   expectInputError([&] { openFrames(""); }, "no such");

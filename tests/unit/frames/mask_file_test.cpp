@@ -21,7 +21,7 @@ std::string halfBlack() {
   return pgm(64, 48, pixels);
 }
 
-void expectRefused(const std::string& path, const std::string& part) {
+void expectMaskRefused(const std::string& path, const std::string& part) {
   try {
     readMask(path);
     ADD_FAILURE() << "not refused: " << path;
@@ -42,10 +42,10 @@ TEST(MaskFile, IsWrittenAsItIsRead) {
 
 TEST(MaskFile, WhatIsNoMaskIsRefused) {
   const TemporaryFolder folder;
-  expectRefused(folder.path("none.png"), "no such file; expected an image of the camera's size, black where");
-  expectRefused(folder.write("text.png", "black"), "is no PNG, JPEG");
-  expectRefused(folder.write("cut.pgm", halfBlack().substr(0, 100)), "is cut off or damaged");
-  expectRefused(folder.write("black.pgm", pgm(64, 48, std::string(64 * 48, '\0'))), "all of it is black");
+  expectMaskRefused(folder.path("none.png"), "no such file; expected an image of the camera's size, black where");
+  expectMaskRefused(folder.write("text.png", "black"), "is no PNG, JPEG");
+  expectMaskRefused(folder.write("cut.pgm", halfBlack().substr(0, 100)), "is cut off or damaged");
+  expectMaskRefused(folder.write("black.pgm", pgm(64, 48, std::string(64 * 48, '\0'))), "all of it is black");
 }
 
 TEST(MaskFile, HasTheCamerasSize) {

@@ -4,6 +4,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "unit/files/temporary_folder.h"
+#include "unit/frames/all_frames.h"
 
 namespace edgeslam {
 namespace {
@@ -22,12 +23,6 @@ std::string times(int count) {
   std::string text = "# time stamps\n";
   for (int i = 0; i < count; ++i) text += std::to_string(100 + i * i) + ".5\n";
   return text;
-}
-
-std::vector<Frame> readAll(FrameSource& source) {
-  std::vector<Frame> frames;
-  while (std::optional<Frame> frame = source.next()) frames.push_back(*frame);
-  return frames;
 }
 
 TEST(VideoSource, TakesItsTimesFromTheListAndNotFromTheVideo) {

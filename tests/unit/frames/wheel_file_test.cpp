@@ -7,24 +7,24 @@
 namespace edgeslam {
 namespace {
 
-const std::string text =
+const std::string odometry_text =
     "# timestamp tx ty tz qx qy qz qw\n"
     "1000.010000 0.1 0.2 0 0 0 0 1\n"
     "1000.030000, 0.2, 0.2, 0, 0, 0, 0.6, 0.8\n";
 
-std::vector<OdometryPose> read(const std::string& content) {
+std::vector<OdometryPose> odometryOf(const std::string& content) {
   const TemporaryFolder folder;
   return readWheelOdometry(folder.write("wheel_odometry.txt", content));
 }
 
 template <typename... Texts>
-void expectRefused(const std::string& content, const Texts&... messages) {
+void expectOdometryRefused(const std::string& content, const Texts&... messages) {
   SCOPED_TRACE(content);
-  expectInputError([&] { read(content); }, "wheel_odometry.txt", messages...);
+  expectInputError([&] { odometryOf(content); }, "wheel_odometry.txt", messages...);
 }
 
 TEST(WheelFile, ReadsPoses) {
-  const std::vector<OdometryPose> poses = read(text);
+  const std::vector<OdometryPose> poses = odometryOf(odometry_text);
   ASSERT_EQ(poses.size(), 2U);
   EXPECT_EQ(poses[0].utime, 1000'010'000);
   EXPECT_EQ(poses[1].local_T_body.translation, Eigen::Vector3d(0.2, 0.2, 0));
@@ -33,22 +33,22 @@ TEST(WheelFile, ReadsPoses) {
 }
 
 TEST(WheelFile, LeavesOutATornLine) {
-  EXPECT_EQ(read(text + "1000.05 0.3 0.").size(), 2U);
-  expectRefused(text + "1000.05 0.3 0.\n", ":4: ", "8 columns");
+  EXPECT_EQ(odometryOf(odometry_text + "1000.05 0.3 0.").size(), 2U);
+  expectOdometryRefused(odometry_text + "1000.05 0.3 0.\n", ":4: ", "8 columns");
 }
 
 TEST(WheelFile, SaysWhatIsWrong) {
-  expectRefused("", "no poses");
-  expectRefused("# nothing but this\n", "no poses");
-  expectRefused("1 2 3\n", ":1: ", "8 columns");
-  expectRefused("1 0 0 0 0 0 0 1 5\n", ":1: ", "8 columns");
-  expectRefused("1 nan 0 0 0 0 0 1\n", ":1: ", "8 columns");
-  expectRefused("1 0 0 inf 0 0 0 1\n", ":1: ", "8 columns");
-  expectRefused("1 0 0 0 0 0 0 0\n", ":1: ", "quaternion");
-  expectRefused("1 0 0 0 0 0 0 2\n", ":1: ", "quaternion");
-  expectRefused("1 1e9 0 0 0 0 0 1\n", ":1: ", "1000 km");
-  expectRefused("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", ":2: ", "not after");
-  expectRefused("2 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n", ":2: ", "not after");
+  expectOdometryRefused("", "no poses");
+  expectOdometryRefused("# nothing but this\n", "no poses");
+  expectOdometryRefused("1 2 3\n", ":1: ", "8 columns");
+  expectOdometryRefused("1 0 0 0 0 0 0 1 5\n", ":1: ", "8 columns");
+  expectOdometryRefused("1 nan 0 0 0 0 0 1\n", ":1: ", "8 columns");
+  expectOdometryRefused("1 0 0 inf 0 0 0 1\n", ":1: ", "8 columns");
+  expectOdometryRefused("1 0 0 0 0 0 0 0\n", ":1: ", "quaternion");
+  expectOdometryRefused("1 0 0 0 0 0 0 2\n", ":1: ", "quaternion");
+  expectOdometryRefused("1 1e9 0 0 0 0 0 1\n", ":1: ", "1000 km");
+  expectOdometryRefused("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", ":2: ", "not after");
+  expectOdometryRefused("2 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n", ":2: ", "not after");
 }
 
 }  // namespace
