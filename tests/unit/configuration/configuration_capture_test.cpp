@@ -12,7 +12,7 @@ CameraOptions captureOf(const std::string& text) {
   return readConfiguration(folder.write("file.yaml", text)).capture;
 }
 
-void expectRefused(const std::string& text, const std::string& part) {
+void expectCaptureRefused(const std::string& text, const std::string& part) {
   expectInputError([&] { captureOf(text); }, std::string("file.yaml:"), part);
 }
 
@@ -23,7 +23,7 @@ std::string controlOf(const CameraOptions& options, const std::string& name) {
   return "(none)";
 }
 
-const char* const whole =
+const char* const whole_capture =
     "capture:\n"
     "  device: /dev/v4l/by-id/usb-Maker-index0\n"
     "  format: YUYV\n"
@@ -40,7 +40,7 @@ const char* const whole =
     "  controls: {brightness: -3, test_pattern: Gray Ramp}\n";
 
 TEST(ConfigurationCapture, EveryKeyIsRead) {
-  const CameraOptions options = captureOf(whole);
+  const CameraOptions options = captureOf(whole_capture);
   EXPECT_EQ(options.device, "/dev/v4l/by-id/usb-Maker-index0");
   EXPECT_EQ(options.format, "YUYV");
   EXPECT_EQ(options.width, 640);
@@ -58,7 +58,7 @@ TEST(ConfigurationCapture, EveryKeyIsRead) {
 }
 
 TEST(ConfigurationCapture, WhatIsWrittenReadsBackAsTheSame) {
-  const CameraOptions first = captureOf(whole);
+  const CameraOptions first = captureOf(whole_capture);
   const std::string text = formatCaptureSection(first);
   EXPECT_EQ(formatCaptureSection(captureOf(text)), text);
   EXPECT_EQ(captureOf(text).controls.size(), first.controls.size());
@@ -102,27 +102,28 @@ TEST(ConfigurationCapture, ControlsComeInAnOrderThatDoesNotDependOnTheFiles) {
 }
 
 TEST(ConfigurationCapture, MistakesAreToldWithLineAndKey) {
-  expectRefused("capture: {devise: /dev/video0}\n", "capture.devise is not a key; did you mean capture.device?");
-  expectRefused("capture: {device: [1]}\n", "capture.device: ");
-  expectRefused("capture: {format: RGGB}\n", "capture.format: 'RGGB' is not known; expected one of GREY");
-  expectRefused("capture: {width: 640}\n", "capture.width and capture.height go together");
-  expectRefused("capture: {width: 4, height: 480}\n", "capture.width: ");
-  expectRefused("capture: {frame_rate: .nan}\n", "capture.frame_rate: ");
-  expectRefused("capture: {frame_rate: 0}\n", "0.1 to 1000 frames/s");
-  expectRefused("capture: {longest_exposure: -1}\n", "capture.longest_exposure: ");
+  expectCaptureRefused("capture: {devise: /dev/video0}\n", "capture.devise is not a key; did you mean capture.device?");
+  expectCaptureRefused("capture: {device: [1]}\n", "capture.device: ");
+  expectCaptureRefused("capture: {format: RGGB}\n", "capture.format: 'RGGB' is not known; expected one of GREY");
+  expectCaptureRefused("capture: {width: 640}\n", "capture.width and capture.height go together");
+  expectCaptureRefused("capture: {width: 4, height: 480}\n", "capture.width: ");
+  expectCaptureRefused("capture: {frame_rate: .nan}\n", "capture.frame_rate: ");
+  expectCaptureRefused("capture: {frame_rate: 0}\n", "0.1 to 1000 frames/s");
+  expectCaptureRefused("capture: {longest_exposure: -1}\n", "capture.longest_exposure: ");
   for (const char* region : {"[1, 2, 3]", "[0, 0, 640, 480, 1]", "[-1, 0, 640, 480]", "[0, 0, 0, 480]",
                              "[0, 0, 1e9, 480]", "[0.5, 0, 640, 480]", "640x480"}) {
-    expectRefused(std::string("capture: {region: ") + region + "}\n", "capture.region: four whole numbers");
+    expectCaptureRefused(std::string("capture: {region: ") + region + "}\n", "capture.region: four whole numbers");
   }
-  expectRefused("capture: {exposure: long}\n", "capture.exposure: 'long' is not possible; expected auto or a number");
-  expectRefused("capture: {exposure: -3}\n", "capture.exposure: '-3'");
-  expectRefused("capture: {gain: [1]}\n", "capture.gain: ");
-  expectRefused("capture: {power_line_frequency: 55}\n", "expected 50, 60, off or auto");
-  expectRefused("capture: {controls: 3}\n", "capture.controls: a mapping");
-  expectRefused("capture: {controls: {brightness: [1]}}\n", "capture.controls.brightness: a number or a word");
-  expectRefused("capture: {controls: {gain: 3}}\n", "is given as capture.gain");
-  expectRefused("capture: {controls: {a: 1, a: 2}}\n", "capture.controls.a is given twice");
-  expectRefused("capture:\n  device: a\n  device: b\n", "capture.device is given twice");
+  expectCaptureRefused("capture: {exposure: long}\n",
+                       "capture.exposure: 'long' is not possible; expected auto or a number");
+  expectCaptureRefused("capture: {exposure: -3}\n", "capture.exposure: '-3'");
+  expectCaptureRefused("capture: {gain: [1]}\n", "capture.gain: ");
+  expectCaptureRefused("capture: {power_line_frequency: 55}\n", "expected 50, 60, off or auto");
+  expectCaptureRefused("capture: {controls: 3}\n", "capture.controls: a mapping");
+  expectCaptureRefused("capture: {controls: {brightness: [1]}}\n", "capture.controls.brightness: a number or a word");
+  expectCaptureRefused("capture: {controls: {gain: 3}}\n", "is given as capture.gain");
+  expectCaptureRefused("capture: {controls: {a: 1, a: 2}}\n", "capture.controls.a is given twice");
+  expectCaptureRefused("capture:\n  device: a\n  device: b\n", "capture.device is given twice");
 }
 
 }  // namespace

@@ -3,21 +3,17 @@
 #include <gtest/gtest.h>
 
 #include "configuration/configuration_text.h"
+#include "unit/configuration/configuration_file.h"
 #include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
 namespace {
 
-Configuration read(const std::string& text) {
-  const TemporaryFolder folder;
-  return readConfiguration(folder.write("file.yaml", text));
+void expectLineRefused(const std::string& text, const std::string& line, const std::string& part) {
+  expectInputError([&] { configurationOf(text); }, "file.yaml:" + line + ": ", part);
 }
 
-void expectRefused(const std::string& text, const std::string& line, const std::string& part) {
-  expectInputError([&] { read(text); }, "file.yaml:" + line + ": ", part);
-}
-
-const char* const whole =
+const char* const whole_file =
     "lcm:\n"
     "  url: udpm://239.1.2.3:7000\n"
     "  ttl: 1\n"
@@ -50,7 +46,7 @@ const char* const whole =
     "  token: 0123456789abcdef\n";
 
 TEST(ConfigurationService, ReadsEveryKey) {
-  const ServiceOptions service = read(whole).service;
+  const ServiceOptions service = configurationOf(whole_file).service;
   EXPECT_EQ(service.lcm.url, "udpm://239.1.2.3:7000");
   EXPECT_EQ(service.lcm.time_to_live, 1);
   EXPECT_EQ(service.lcm.pose_channel, "HEAD_POSE");
@@ -60,8 +56,8 @@ TEST(ConfigurationService, ReadsEveryKey) {
   EXPECT_TRUE(service.goes_on_with_map);
   EXPECT_EQ(service.recordings_folder, "recordings");
   EXPECT_TRUE(service.records_from_start);
-  EXPECT_EQ(read(whole).settings.recording.most_megabytes, 100);
-  EXPECT_EQ(read(whole).settings.recording.kept_free_megabytes, 50);
+  EXPECT_EQ(configurationOf(whole_file).settings.recording.most_megabytes, 100);
+  EXPECT_EQ(configurationOf(whole_file).settings.recording.kept_free_megabytes, 50);
   EXPECT_EQ(service.scale.source, "odometry");
   EXPECT_EQ(service.scale.height.camera_height_m, 0.42);
   EXPECT_EQ(service.scale.height.sigma_m, 0.02);
@@ -88,47 +84,48 @@ TEST(ConfigurationService, ThePageIsOffAndForThisComputerAlone) {
 
 // Recordings and results keep the configuration that they were made with.
 TEST(ConfigurationService, TheTokenIsNotWrittenAnywhere) {
-  EXPECT_EQ(formatConfiguration(read(whole)).find("0123456789abcdef"), std::string::npos);
-  EXPECT_EQ(formatConfiguration(read("viewer: {enabled: true}\n")), formatConfiguration(Configuration()));
+  EXPECT_EQ(formatConfiguration(configurationOf(whole_file)).find("0123456789abcdef"), std::string::npos);
+  EXPECT_EQ(formatConfiguration(configurationOf("viewer: {enabled: true}\n")), formatConfiguration(Configuration()));
 }
 
 TEST(ConfigurationService, WhatIsWrittenReadsBackAsTheSame) {
-  const std::string text = formatConfiguration(read(whole));
-  EXPECT_EQ(formatConfiguration(read(text)), text);
+  const std::string text = formatConfiguration(configurationOf(whole_file));
+  EXPECT_EQ(formatConfiguration(configurationOf(text)), text);
 }
 
 TEST(ConfigurationService, WhatIsWrongIsToldByLineAndKey) {
-  expectRefused("map:\n  go_no: true\n", "2", "map.go_no is not a key; did you mean map.go_on?");
-  expectRefused("map:\n  go_on: maybe\n", "2", "map.go_on");
-  expectRefused("map:\n  file: [a]\n", "2", "map.file: a text is expected");
-  expectRefused("map:\n  file: ''\n", "2", "map.file: a text of 1 to 1000 letters is expected");
-  expectRefused("recording:\n  most_megabytes: 0\n", "2", "recording.most_megabytes: 0 is out of range");
-  expectRefused("scale:\n  metres_per_unit: nan\n", "2", "scale.metres_per_unit");
-  expectRefused("scale:\n  source: wheels\n", "2",
-                "scale.source: 'wheels' is no source; expected none, camera_height or odometry");
-  expectRefused("scale:\n  source: camera_height\n", "2", "camera_height needs scale.camera_height_m");
-  expectRefused("scale:\n  source: odometry\n", "2", "odometry needs scale.odometry_channel");
-  expectRefused("scale:\n  source: odometry\n  odometry_channel: my wheels\n", "2", "scale.odometry_channel: ");
-  expectRefused("scale:\n  source: odometry\n  odometry_channel: SLAM_POSE\n", "2", "is named twice");
+  expectLineRefused("map:\n  go_no: true\n", "2", "map.go_no is not a key; did you mean map.go_on?");
+  expectLineRefused("map:\n  go_on: maybe\n", "2", "map.go_on");
+  expectLineRefused("map:\n  file: [a]\n", "2", "map.file: a text is expected");
+  expectLineRefused("map:\n  file: ''\n", "2", "map.file: a text of 1 to 1000 letters is expected");
+  expectLineRefused("recording:\n  most_megabytes: 0\n", "2", "recording.most_megabytes: 0 is out of range");
+  expectLineRefused("scale:\n  metres_per_unit: nan\n", "2", "scale.metres_per_unit");
+  expectLineRefused("scale:\n  source: wheels\n", "2",
+                    "scale.source: 'wheels' is no source; expected none, camera_height or odometry");
+  expectLineRefused("scale:\n  source: camera_height\n", "2", "camera_height needs scale.camera_height_m");
+  expectLineRefused("scale:\n  source: odometry\n", "2", "odometry needs scale.odometry_channel");
+  expectLineRefused("scale:\n  source: odometry\n  odometry_channel: my wheels\n", "2", "scale.odometry_channel: ");
+  expectLineRefused("scale:\n  source: odometry\n  odometry_channel: SLAM_POSE\n", "2", "is named twice");
   // In whichever order the sections come.
-  expectRefused("scale: {source: odometry, odometry_channel: A}\nlcm:\n  pose_channel: A\n", "3", "is named twice");
-  expectRefused("wheels: {enabled: true}\nscale: {odometry_channel: A}\nlcm:\n  pose_channel: A\n", "4",
-                "is named twice");
-  expectRefused("scale: {odometry_channel: my wheels}\nwheels:\n  enabled: true\n", "3", "scale.odometry_channel: ");
-  expectRefused("scale:\n  odometry_window_m: 0\n", "2", "scale.odometry_window_m: 0 is out of range");
-  expectRefused("scale:\n  camera_height_m: -1\n", "2", "scale.camera_height_m: -1 is out of range");
-  expectRefused("lcm:\n  ttl: 256\n", "2", "lcm.ttl: 256 is out of range");
-  expectRefused("lcm:\n  url: nonsense\n", "2", "lcm: ");
-  expectRefused("lcm:\n  pose_channel: SLAM_STATE\n", "2", "lcm: ");
-  expectRefused("viewer:\n  enabled: true\n  address: 0.0.0.0\n", "2", "viewer.token is needed");
-  expectRefused("viewer:\n  address: robot\n", "2", "viewer.address: 'robot' is no address");
-  expectRefused("viewer:\n  token: short\n", "2", "viewer.token: expected 16 to 128");
-  expectRefused("viewer:\n  port: 0\n", "2", "viewer.port: 0 is out of range");
-  expectRefused("viewer:\n  adress: 127.0.0.1\n", "2", "did you mean viewer.address?");
-  expectRefused("ros2:\n  namespace: 1robot\n", "2", "ros2.namespace: '1robot' is none");
-  expectRefused("ros2:\n  transforms: odom\n", "2", "ros2.transforms: 'odom' is not known");
-  expectRefused("ros2:\n  domain: 233\n", "2", "ros2.domain: 233 is out of range");
-  expectRefused("lcm: 5\n", "1", "lcm: a mapping of keys is expected");
+  expectLineRefused("scale: {source: odometry, odometry_channel: A}\nlcm:\n  pose_channel: A\n", "3", "is named twice");
+  expectLineRefused("wheels: {enabled: true}\nscale: {odometry_channel: A}\nlcm:\n  pose_channel: A\n", "4",
+                    "is named twice");
+  expectLineRefused("scale: {odometry_channel: my wheels}\nwheels:\n  enabled: true\n", "3",
+                    "scale.odometry_channel: ");
+  expectLineRefused("scale:\n  odometry_window_m: 0\n", "2", "scale.odometry_window_m: 0 is out of range");
+  expectLineRefused("scale:\n  camera_height_m: -1\n", "2", "scale.camera_height_m: -1 is out of range");
+  expectLineRefused("lcm:\n  ttl: 256\n", "2", "lcm.ttl: 256 is out of range");
+  expectLineRefused("lcm:\n  url: nonsense\n", "2", "lcm: ");
+  expectLineRefused("lcm:\n  pose_channel: SLAM_STATE\n", "2", "lcm: ");
+  expectLineRefused("viewer:\n  enabled: true\n  address: 0.0.0.0\n", "2", "viewer.token is needed");
+  expectLineRefused("viewer:\n  address: robot\n", "2", "viewer.address: 'robot' is no address");
+  expectLineRefused("viewer:\n  token: short\n", "2", "viewer.token: expected 16 to 128");
+  expectLineRefused("viewer:\n  port: 0\n", "2", "viewer.port: 0 is out of range");
+  expectLineRefused("viewer:\n  adress: 127.0.0.1\n", "2", "did you mean viewer.address?");
+  expectLineRefused("ros2:\n  namespace: 1robot\n", "2", "ros2.namespace: '1robot' is none");
+  expectLineRefused("ros2:\n  transforms: odom\n", "2", "ros2.transforms: 'odom' is not known");
+  expectLineRefused("ros2:\n  domain: 233\n", "2", "ros2.domain: 233 is out of range");
+  expectLineRefused("lcm: 5\n", "1", "lcm: a mapping of keys is expected");
 }
 
 }  // namespace

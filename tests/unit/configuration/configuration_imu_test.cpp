@@ -7,19 +7,19 @@
 namespace edgeslam {
 namespace {
 
-const std::string pose = "imu_T_camera: {translation: [0.01, -0.02, 0.03], quaternion: [0.5, 0.5, -0.5, 0.5]}";
+const std::string mounting_text = "imu_T_camera: {translation: [0.01, -0.02, 0.03], quaternion: [0.5, 0.5, -0.5, 0.5]}";
 
-Configuration configurationOf(const std::string& text) {
+Configuration configurationWithUnits(const std::string& text) {
   const TemporaryFolder folder;
-  folder.write("units/known.yaml", pose + "\ngyroscope_noise_density: 0.004\ntime_offset_s: -0.005\n");
-  folder.write("units/rolling.yaml", pose + "\nreadout_s: 0.024\n");
-  folder.write("units/bad.yaml", pose + "\ngyroscope_noise_density: -1\n");
+  folder.write("units/known.yaml", mounting_text + "\ngyroscope_noise_density: 0.004\ntime_offset_s: -0.005\n");
+  folder.write("units/rolling.yaml", mounting_text + "\nreadout_s: 0.024\n");
+  folder.write("units/bad.yaml", mounting_text + "\ngyroscope_noise_density: -1\n");
   return readConfiguration(folder.write("file.yaml", text));
 }
 
-void expectRefused(const std::string& text, const std::string& part) {
+void expectUnitRefused(const std::string& text, const std::string& part) {
   try {
-    settingsWithSensors(configurationOf(text));
+    settingsWithSensors(configurationWithUnits(text));
     ADD_FAILURE() << "not refused: " << text;
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
@@ -37,27 +37,28 @@ void expectTheKnownUnit(const Configuration& read) {
 }
 
 TEST(ConfigurationImu, IsNotUsedUnlessAskedFor) {
-  const Configuration read = configurationOf("imu: {" + pose + "}\n");
+  const Configuration read = configurationWithUnits("imu: {" + mounting_text + "}\n");
   EXPECT_FALSE(read.inertia.is_used);
   EXPECT_FALSE(settingsWithSensors(read).tracking.inertia);
-  EXPECT_FALSE(settingsWithSensors(configurationOf("")).tracking.inertia);
+  EXPECT_FALSE(settingsWithSensors(configurationWithUnits("")).tracking.inertia);
 }
 
 TEST(ConfigurationImu, ReadsAnInlineUnitAndAFile) {
-  expectTheKnownUnit(configurationOf("imu: {" + pose + ", gyroscope_noise_density: 0.004, time_offset_s: -0.005}\n"));
-  expectTheKnownUnit(configurationOf("imu: {calibration: units/known.yaml, enabled: true}\n"));
+  expectTheKnownUnit(
+      configurationWithUnits("imu: {" + mounting_text + ", gyroscope_noise_density: 0.004, time_offset_s: -0.005}\n"));
+  expectTheKnownUnit(configurationWithUnits("imu: {calibration: units/known.yaml, enabled: true}\n"));
 }
 
 TEST(ConfigurationImu, AUsedUnitIsInTheSettings) {
   const Settings settings =
-      settingsWithSensors(configurationOf("imu: {enabled: true, calibration: units/known.yaml}\n"));
+      settingsWithSensors(configurationWithUnits("imu: {enabled: true, calibration: units/known.yaml}\n"));
   ASSERT_TRUE(settings.tracking.inertia);
   EXPECT_EQ(settings.tracking.inertia->rate_noise, 0.004);
   EXPECT_TRUE(settings.mapping.local_adjustment.inertia);
 }
 
 TEST(ConfigurationImu, TheReadoutFoundWithTheUnitIsTheCamerasWhereItsCalibrationHasNone) {
-  Configuration with = configurationOf("imu: {enabled: true, calibration: units/rolling.yaml}\n");
+  Configuration with = configurationWithUnits("imu: {enabled: true, calibration: units/rolling.yaml}\n");
   Camera camera;
   EXPECT_EQ(withReadoutOfUnit(camera, with).readout_s, 0.024);
   with.has_readout = true;
@@ -71,15 +72,15 @@ TEST(ConfigurationImu, TheReadoutFoundWithTheUnitIsTheCamerasWhereItsCalibration
 }
 
 TEST(ConfigurationImu, WhatCannotBeIsRefused) {
-  expectRefused("imu: {enabled: true}\n", "imu.imu_T_camera");
-  expectRefused("imu: {calibration: units/none.yaml}\n", "imu.calibration: ");
-  expectRefused("imu: {calibration: units/bad.yaml}\n", "gyroscope_noise_density");
-  expectRefused("imu: {calibration: [1]}\n", "the path of a file");
-  expectRefused("imu: {calibration: units/known.yaml, time_offset_s: 1}\n", "in a file already");
-  expectRefused("imu: {imu_T_camera: [1, 2, 3]}\n", "16 finite numbers");
-  expectRefused("imu: {time_offset_s: 1000}\n", "-10 to 10 s");
-  expectRefused("imu: {channel: SLAM_POSE}\n", "named twice");
-  expectRefused("imu: {channel: \"\"}\n", "imu.channel: a text");
+  expectUnitRefused("imu: {enabled: true}\n", "imu.imu_T_camera");
+  expectUnitRefused("imu: {calibration: units/none.yaml}\n", "imu.calibration: ");
+  expectUnitRefused("imu: {calibration: units/bad.yaml}\n", "gyroscope_noise_density");
+  expectUnitRefused("imu: {calibration: [1]}\n", "the path of a file");
+  expectUnitRefused("imu: {calibration: units/known.yaml, time_offset_s: 1}\n", "in a file already");
+  expectUnitRefused("imu: {imu_T_camera: [1, 2, 3]}\n", "16 finite numbers");
+  expectUnitRefused("imu: {time_offset_s: 1000}\n", "-10 to 10 s");
+  expectUnitRefused("imu: {channel: SLAM_POSE}\n", "named twice");
+  expectUnitRefused("imu: {channel: \"\"}\n", "imu.channel: a text");
 }
 
 TEST(ConfigurationImu, IsWrittenSoThatItReadsBackToTheLastBit) {
@@ -88,7 +89,7 @@ TEST(ConfigurationImu, IsWrittenSoThatItReadsBackToTheLastBit) {
   before.inertia.unit.imu_T_camera = {Eigen::Quaterniond(1, 2, 3, 4).normalized(), {0.1 / 3, 1e-17, -7}};
   before.inertia.unit.rate_noise = 1e-3 / 7;
   before.inertia.unit.offset_ns = -123'456'789;
-  const Configuration after = configurationOf(formatConfiguration(before));
+  const Configuration after = configurationWithUnits(formatConfiguration(before));
   EXPECT_EQ(after.inertia.unit.imu_T_camera.rotation.coeffs(), before.inertia.unit.imu_T_camera.rotation.coeffs());
   EXPECT_EQ(after.inertia.unit.imu_T_camera.translation, before.inertia.unit.imu_T_camera.translation);
   EXPECT_EQ(after.inertia.unit.rate_noise, before.inertia.unit.rate_noise);

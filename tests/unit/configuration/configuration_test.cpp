@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "configuration/configuration_text.h"
+#include "unit/configuration/configuration_file.h"
 #include "unit/files/temporary_folder.h"
 
 namespace edgeslam {
@@ -23,11 +24,6 @@ std::vector<std::string> problemsOf(const std::string& text) {
     problem = problem.substr(std::min(problem.size(), path.size() - std::string("file.yaml").size()));
   }
   return problems;
-}
-
-Configuration configurationOf(const std::string& text) {
-  const TemporaryFolder folder;
-  return readConfiguration(folder.write("file.yaml", text));
 }
 
 using Lines = std::vector<std::string>;

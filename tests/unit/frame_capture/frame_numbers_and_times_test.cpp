@@ -5,6 +5,7 @@
 
 #include "drivers/frame_capture/exposure_middle.h"
 #include "drivers/frame_capture/sequence_counter.h"
+#include "unit/frame_capture/stream_times.h"
 
 namespace edgeslam {
 namespace {
@@ -45,7 +46,6 @@ TEST(SequenceCounter, ADriverThatDoesNotCountOrBeginsAnewLosesNothing) {
   EXPECT_EQ(count({900, 901, 0, 1, 3}).lost, (Numbers{0, 0, 0, 0, 1}));
 }
 
-constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t arrival = 50'000 * ms;
 
 TEST(ExposureMiddle, IsBetweenStartAndEndOfTheExposure) {

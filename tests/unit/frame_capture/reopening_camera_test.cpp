@@ -5,11 +5,10 @@
 #include <deque>
 #include <vector>
 
+#include "unit/frame_capture/stream_times.h"
+
 namespace edgeslam {
 namespace {
-
-constexpr std::int64_t ms = 1'000'000;
-constexpr std::int64_t interval = 33 * ms;
 
 // A camera on a clock that only it and waiting move.
 struct World {
@@ -29,15 +28,15 @@ class ScriptedCamera : public LiveCamera {
  public:
   explicit ScriptedCamera(World& world) : world_(world) {
     world.keeps_jpeg = false;
-    stream_ = {"scripted", "GREY", world.width, 3, interval, world.is_recording};
+    stream_ = {"scripted", "GREY", world.width, 3, stream_interval_ns, world.is_recording};
   }
   Capture next(cv::Mat& grey, std::chrono::nanoseconds timeout) override {
     if (!world_.plugged) return {CaptureEvent::interrupted, {}, "unplugged"};
-    if (world_.frozen || timeout.count() < interval) {
+    if (world_.frozen || timeout.count() < stream_interval_ns) {
       world_.now_ns += timeout.count();
       return {};
     }
-    world_.now_ns += interval;
+    world_.now_ns += stream_interval_ns;
     if (world_.damaged) return {CaptureEvent::damaged_frame, {}, "torn"};
     grey.create(3, world_.width, CV_8U);
     Capture capture{CaptureEvent::frame, {}, ""};

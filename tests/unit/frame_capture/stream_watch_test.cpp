@@ -4,11 +4,10 @@
 
 #include <vector>
 
+#include "unit/frame_capture/stream_times.h"
+
 namespace edgeslam {
 namespace {
-
-constexpr std::int64_t ms = 1'000'000;
-constexpr std::int64_t interval = 33 * ms;
 
 TEST(StreamWatch, AFrozenStreamIsNoticedWithinHalfASecondFromTenFramesASecondOn) {
   for (const std::int64_t frame_interval : {std::int64_t{0}, 8 * ms, 16 * ms, 33 * ms, 80 * ms, 100 * ms}) {
@@ -29,7 +28,7 @@ TEST(StreamWatch, ASlowCameraIsNotTakenForFrozen) {
 
 TEST(StreamWatch, ACameraMayTakeLongerForItsFirstFrame) {
   StreamWatch watch;
-  watch.opened(5000 * ms, interval);
+  watch.opened(5000 * ms, stream_interval_ns);
   EXPECT_GE(watch.frozenAt(), 6500 * ms);
   watch.gotDamagedFrame(5500 * ms);
   EXPECT_GE(watch.frozenAt(), 6500 * ms);
@@ -38,15 +37,15 @@ TEST(StreamWatch, ACameraMayTakeLongerForItsFirstFrame) {
 TEST(StreamWatch, DamagedFramesAreASignOfLifeForAWhile) {
   const WatchPolicy policy;
   StreamWatch watch(policy);
-  watch.opened(0, interval);
+  watch.opened(0, stream_interval_ns);
   watch.gotFrame(100 * ms);
   std::int64_t now = 100 * ms;
   while (now < watch.frozenAt()) {
     watch.gotDamagedFrame(now);
-    now += interval;
+    now += stream_interval_ns;
   }
   EXPECT_GE(now - 100 * ms, policy.only_damaged_ns);
-  EXPECT_LE(now - 100 * ms, policy.only_damaged_ns + interval);
+  EXPECT_LE(now - 100 * ms, policy.only_damaged_ns + stream_interval_ns);
 }
 
 // The waits between attempts that all fail at once.
@@ -74,9 +73,9 @@ TEST(StreamWatch, ACameraThatKeepsFallingOutIsNotOpenedEverFaster) {
   StreamWatch watch;
   std::int64_t now = 0, last_wait = 0;
   for (int i = 0; i < 5; ++i) {
-    watch.opened(now, interval);
-    watch.gotFrame(now += interval);
-    watch.failed(now += interval);
+    watch.opened(now, stream_interval_ns);
+    watch.gotFrame(now += stream_interval_ns);
+    watch.failed(now += stream_interval_ns);
     EXPECT_GT(watch.tryAt() - now, last_wait);
     last_wait = watch.tryAt() - now;
     now = watch.tryAt();
@@ -86,8 +85,8 @@ TEST(StreamWatch, ACameraThatKeepsFallingOutIsNotOpenedEverFaster) {
 TEST(StreamWatch, AfterAHealthyTimeTheWaitsBeginAnew) {
   StreamWatch watch;
   waits(watch, 0, 6);
-  watch.opened(0, interval);
-  for (std::int64_t now = 0; now < 4000 * ms; now += interval) watch.gotFrame(now);
+  watch.opened(0, stream_interval_ns);
+  for (std::int64_t now = 0; now < 4000 * ms; now += stream_interval_ns) watch.gotFrame(now);
   watch.failed(4000 * ms);
   EXPECT_EQ(watch.tryAt() - 4000 * ms, 100 * ms);
 }

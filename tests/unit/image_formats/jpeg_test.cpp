@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "unit/image_formats/read_by_opencv.h"
+
 namespace edgeslam {
 namespace {
 
@@ -21,15 +23,10 @@ cv::Mat picture(cv::Size size, int type) {
   return image;
 }
 
-std::string encoded(const cv::Mat& image, const std::vector<int>& options = {}) {
+std::string encodedJpeg(const cv::Mat& image, const std::vector<int>& options = {}) {
   std::vector<unsigned char> bytes;
   cv::imencode(".jpg", image, bytes, options);
   return {bytes.begin(), bytes.end()};
-}
-
-cv::Mat asOpenCvReads(const std::string& bytes) {
-  const std::vector<unsigned char> copy(bytes.begin(), bytes.end());
-  return cv::imdecode(copy, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
 TEST(Jpeg, IsReadAsOpenCvReadsIt) {
@@ -39,7 +36,7 @@ TEST(Jpeg, IsReadAsOpenCvReadsIt) {
                                                                            {cv::IMWRITE_JPEG_QUALITY, 30},
                                                                            {cv::IMWRITE_JPEG_PROGRESSIVE, 1},
                                                                            {cv::IMWRITE_JPEG_RST_INTERVAL, 2}}) {
-        const std::string bytes = encoded(picture(size, type), options);
+        const std::string bytes = encodedJpeg(picture(size, type), options);
         const cv::Mat grey = decodeJpeg(bytes), expected = asOpenCvReads(bytes);
         ASSERT_EQ(grey.size(), size);
         EXPECT_EQ(cv::norm(grey, expected, cv::NORM_INF), 0) << size;
@@ -53,7 +50,7 @@ TEST(Jpeg, IsEncodedAsOpenCvDoes) {
     for (const int quality : {30, 70, 82, 100}) {
       const cv::Mat image = picture({65, 49}, type);
       const std::vector<unsigned char> bytes = encodeJpeg(image, quality);
-      EXPECT_EQ(std::string(bytes.begin(), bytes.end()), encoded(image, {cv::IMWRITE_JPEG_QUALITY, quality}))
+      EXPECT_EQ(std::string(bytes.begin(), bytes.end()), encodedJpeg(image, {cv::IMWRITE_JPEG_QUALITY, quality}))
           << quality;
     }
   }
@@ -65,14 +62,14 @@ TEST(Jpeg, APartOfAnImageIsEncodedToo) {
 }
 
 TEST(Jpeg, WhatIsCutOffIsNotWhole) {
-  const std::string bytes = encoded(picture({33, 17}, CV_8UC3));
+  const std::string bytes = encodedJpeg(picture({33, 17}, CV_8UC3));
   EXPECT_TRUE(jpegIsWhole(bytes));
   EXPECT_TRUE(jpegIsWhole(bytes + std::string(100, '\0')));
   for (std::size_t length = 0; length < bytes.size(); ++length) EXPECT_FALSE(jpegIsWhole(bytes.substr(0, length)));
 }
 
 TEST(Jpeg, AnyByteChangedIsReadOrNotReadWithoutHarm) {
-  const std::string whole = encoded(picture({33, 17}, CV_8UC3), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  const std::string whole = encodedJpeg(picture({33, 17}, CV_8UC3), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
   std::mt19937 random(3);
   for (std::size_t i = 0; i < whole.size(); ++i) {
     std::string bytes = whole;
@@ -84,7 +81,7 @@ TEST(Jpeg, AnyByteChangedIsReadOrNotReadWithoutHarm) {
 
 // Each scan goes over the whole image, however few bytes it has.
 TEST(Jpeg, AnImageOfEndlessScansIsNotDecoded) {
-  std::string bytes = encoded(picture({64, 48}, CV_8U), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  std::string bytes = encodedJpeg(picture({64, 48}, CV_8U), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
   const std::string scan = bytes.substr(bytes.rfind("\xFF\xDA"));
   ASSERT_FALSE(decodeJpeg(bytes).empty());
   bytes.resize(bytes.size() - 2);

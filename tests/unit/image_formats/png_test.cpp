@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "unit/image_formats/read_by_opencv.h"
+
 namespace edgeslam {
 namespace {
 
@@ -17,11 +19,6 @@ cv::Mat noise(cv::Size size, int type, int seed = 1) {
   cv::RNG random(static_cast<std::uint64_t>(seed));
   random.fill(image, cv::RNG::UNIFORM, 0, image.depth() == CV_16U ? 65536 : 256);
   return image;
-}
-
-cv::Mat asOpenCvReads(const std::string& bytes) {
-  const std::vector<unsigned char> copy(bytes.begin(), bytes.end());
-  return cv::imdecode(copy, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
 bool same(const cv::Mat& a, const cv::Mat& b) {

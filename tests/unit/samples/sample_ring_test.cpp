@@ -2,39 +2,36 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/samples/timed_sample.h"
+
 namespace edgeslam {
 namespace {
 
-struct Sample {
-  std::int64_t time = 0;
-  friend std::int64_t timeOf(const Sample& sample) { return sample.time; }
-};
-
-bool add(SampleRing<Sample>& ring, std::int64_t time) {
+bool add(SampleRing<TimedSample>& ring, std::int64_t time) {
   if (!ring.isNext(time)) return false;
   ring.push({time});
   return true;
 }
 
 TEST(SampleRing, KeepsTheLatestInOrder) {
-  SampleRing<Sample> ring(7);
+  SampleRing<TimedSample> ring(7);
   EXPECT_TRUE(ring.empty());
   EXPECT_EQ(ring.firstAfter(0), 0U);
   for (std::int64_t time = 0; time < 100; ++time) {
     EXPECT_TRUE(add(ring, time));
     EXPECT_EQ(ring.size(), static_cast<std::size_t>(std::min<std::int64_t>(time + 1, 7)));
-    EXPECT_EQ(ring.last().time, time);
-    EXPECT_EQ(ring.at(0).time, std::max<std::int64_t>(0, time - 6));
+    EXPECT_EQ(ring.last().time_ns, time);
+    EXPECT_EQ(ring.at(0).time_ns, std::max<std::int64_t>(0, time - 6));
   }
   ring.popFirst();
-  EXPECT_EQ(ring.at(0).time, 94);
+  EXPECT_EQ(ring.at(0).time_ns, 94);
   EXPECT_EQ(ring.firstAfter(0), 0U);
   EXPECT_EQ(ring.firstAfter(94), 1U);
   EXPECT_EQ(ring.firstAfter(99), ring.size());
 }
 
 TEST(SampleRing, OnlyAClockThatWasSetBackBeginsAnew) {
-  SampleRing<Sample> ring(100);
+  SampleRing<TimedSample> ring(100);
   for (std::int64_t time = 1000; time < 1050; ++time) add(ring, time);
   for (int i = 0; i < 1000; ++i) EXPECT_FALSE(add(ring, 1049)) << "the same again";
   for (int i = 0; i < 19; ++i) EXPECT_FALSE(add(ring, i));

@@ -95,15 +95,15 @@ class SensorRowsTest : public testing::Test {
   FakeDriver driver_;
 };
 
-constexpr double readout_s = 47 * 200e-6;  // rows of 64 + 136 pixels at 1 MHz
+constexpr double line_readout_s = 47 * 200e-6;  // rows of 64 + 136 pixels at 1 MHz
 
 TEST_F(SensorRowsTest, ACameraThatTellsNothingHasNoReadout) { EXPECT_EQ(told(), 0); }
 
 TEST_F(SensorRowsTest, ControlsOfTheVideoDeviceTellTheReadout) {
   driver_.own_numbers = {{V4L2_CID_PIXEL_RATE, 1'000'000}, {V4L2_CID_HBLANK, 136}};
-  EXPECT_DOUBLE_EQ(told(), readout_s);
+  EXPECT_DOUBLE_EQ(told(), line_readout_s);
   driver_.own_numbers[V4L2_CID_PIXEL_RATE] = 5'000'000'000;  // more than 32 bits
-  EXPECT_DOUBLE_EQ(told(), readout_s / 5000);
+  EXPECT_DOUBLE_EQ(told(), line_readout_s / 5000);
 }
 
 TEST_F(SensorRowsTest, ImagesThatAreCutOutOfTheSensorsDoNotTell) {
@@ -111,12 +111,12 @@ TEST_F(SensorRowsTest, ImagesThatAreCutOutOfTheSensorsDoNotTell) {
   driver_.has_crop = true;
   EXPECT_EQ(told(), 0);
   driver_.crop = {0, 0, 64, 48};
-  EXPECT_DOUBLE_EQ(told(), readout_s);
+  EXPECT_DOUBLE_EQ(told(), line_readout_s);
 }
 
 TEST_F(SensorRowsTest, ControlsOfTheSensorBehindTheVideoDeviceTellTheReadout) {
   addSensor();
-  EXPECT_DOUBLE_EQ(told(), readout_s);
+  EXPECT_DOUBLE_EQ(told(), line_readout_s);
 }
 
 TEST_F(SensorRowsTest, ASensorOfAnotherSizeThanTheImagesTellsOnlyOfItself) {
@@ -188,7 +188,7 @@ TEST_F(SensorRowsTest, LinksInACircleEnd) {
   addSensor();
   driver_.links.push_back(link(36, 22, 23, MEDIA_LNK_FL_ENABLED));
   driver_.links.push_back(link(37, 21, 24, MEDIA_LNK_FL_ENABLED));
-  EXPECT_DOUBLE_EQ(told(), readout_s);
+  EXPECT_DOUBLE_EQ(told(), line_readout_s);
 }
 
 TEST_F(SensorRowsTest, FailuresTellNothing) {

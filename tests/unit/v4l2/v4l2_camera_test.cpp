@@ -4,13 +4,12 @@
 
 #include <opencv2/core.hpp>
 
+#include "unit/frame_capture/stream_times.h"
 #include "unit/image_formats/made_jpeg.h"
 #include "unit/v4l2/fake_driver.h"
 
 namespace edgeslam {
 namespace {
-
-constexpr std::int64_t ms = 1'000'000;
 
 class V4l2CameraTest : public testing::Test {
  protected:
