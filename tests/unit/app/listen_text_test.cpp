@@ -11,17 +11,11 @@
 #include "edgeslam/map_lines_t.hpp"
 #include "edgeslam/map_part_t.hpp"
 #include "edgeslam/status_t.hpp"
+#include "unit/lcm/encoded_message.h"
 #include "unit/lcm/made_frames.h"
 
 namespace edgeslam {
 namespace {
-
-template <class Message>
-std::vector<std::uint8_t> encoded(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
 
 std::string describe(const std::vector<std::uint8_t>& bytes) { return describeMessage(bytes.data(), bytes.size()); }
 

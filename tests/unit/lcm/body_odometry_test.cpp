@@ -10,7 +10,7 @@
 namespace edgeslam {
 namespace {
 
-const Pose step{rotationExp({0, 0.03, 0}), {0.02, 0, 0.05}};
+const Pose twist_a_frame{rotationExp({0, 0.03, 0}), {0.02, 0, 0.05}};
 const Pose on_body{rotationExp({-1.2, 1.2, -1.2}), {0.2, 0.05, 0.4}};
 
 Pose poseOf(const double (&p)[3], const double (&q)[4]) { return {{q[0], q[1], q[2], q[3]}, {p[0], p[1], p[2]}}; }
@@ -21,13 +21,8 @@ Pose localTOdom(const OdometryMessages& messages) {
   return poseOf(messages.correction.translation, messages.correction.rotation);
 }
 
-void expectSame(const Pose& a, const Pose& b) {
-  EXPECT_LT((a.translation - b.translation).norm(), 1e-9);
-  EXPECT_LT(rotationAngle(a.rotation, b.rotation), 1e-7);
-}
-
 TEST(BodyOdometry, MovedByItsCorrectionItIsThePose) {
-  test::MovingCamera camera(step);
+  test::MovingCamera camera(twist_a_frame);
   BodyOdometry odometry;
   const RobotSetup robot = metricRobot(on_body, 0.4);
   for (int i = 0; i < 60; ++i) {
@@ -40,7 +35,7 @@ TEST(BodyOdometry, MovedByItsCorrectionItIsThePose) {
 }
 
 TEST(BodyOdometry, MovesAsTheBodyDoes) {
-  test::MovingCamera camera(step);
+  test::MovingCamera camera(twist_a_frame);
   BodyOdometry odometry;
   const RobotSetup robot = metricRobot(on_body, 0.4);
   const auto first = odometry.next(camera.tracked(), robot);
@@ -48,14 +43,14 @@ TEST(BodyOdometry, MovesAsTheBodyDoes) {
   ASSERT_TRUE(first && second);
   expectSame(odomTBody(*first), Pose());
   const Pose moved = odomTBody(*second);
-  expectSame(moved, on_body * Pose{step.rotation, 0.4 * step.translation} * on_body.inverse());
+  expectSame(moved, on_body * Pose{twist_a_frame.rotation, 0.4 * twist_a_frame.translation} * on_body.inverse());
   const double seconds = 1e-9 * test::frame_interval_ns;
   const Eigen::Vector3d velocity(second->odometry.vel[0], second->odometry.vel[1], second->odometry.vel[2]);
   EXPECT_LT((moved.rotation * velocity * seconds - moved.translation).norm(), 1e-9) << "in the body's frame";
 }
 
 TEST(BodyOdometry, SaysWhenItsCorrectionChangedAndWhy) {
-  test::MovingCamera camera(step);
+  test::MovingCamera camera(twist_a_frame);
   BodyOdometry odometry;
   const RobotSetup robot = metricRobot(on_body, 0.4);
   const auto correctionOf = [&](const FrameResult& frame) { return odometry.next(frame, robot)->correction; };
@@ -99,7 +94,7 @@ TEST(BodyOdometry, SaysWhenItsCorrectionChangedAndWhy) {
 }
 
 TEST(BodyOdometry, MetresInPlaceOfMapUnitsAreAReset) {
-  test::MovingCamera camera(step);
+  test::MovingCamera camera(twist_a_frame);
   BodyOdometry odometry;
   RobotSetup robot;
   robot.body_T_camera = on_body;
@@ -113,21 +108,23 @@ TEST(BodyOdometry, MetresInPlaceOfMapUnitsAreAReset) {
 }
 
 TEST(BodyOdometry, AScaleThatIsFollowedMovesTheCorrectionAlone) {
-  test::MovingCamera camera(step);
+  test::MovingCamera camera(twist_a_frame);
   BodyOdometry odometry;
   for (int i = 0; i < 100; ++i) odometry.next(camera.tracked(), metricRobot(on_body, 0.4));
   const Pose before = odomTBody(*odometry.next(camera.tracked(), metricRobot(on_body, 0.4)));
   const auto later = odometry.next(camera.tracked(), metricRobot(on_body, 0.4004));
   ASSERT_TRUE(later);
   const Pose moved = before.inverse() * odomTBody(*later);
-  EXPECT_NEAR(moved.translation.norm(),
-              (on_body * Pose{step.rotation, 0.4 * step.translation} * on_body.inverse()).translation.norm(), 1e-4);
+  EXPECT_NEAR(
+      moved.translation.norm(),
+      (on_body * Pose{twist_a_frame.rotation, 0.4 * twist_a_frame.translation} * on_body.inverse()).translation.norm(),
+      1e-4);
   EXPECT_EQ(later->correction.change, correction_t::SCALE);
   EXPECT_EQ(later->correction.reset_count, 0);
 }
 
 TEST(BodyOdometry, AFrameThatWasLostLeavesTheCorrectionAsItWas) {
-  test::MovingCamera camera(step);
+  test::MovingCamera camera(twist_a_frame);
   BodyOdometry odometry;
   const RobotSetup robot = metricRobot(on_body, 0.4);
   for (int i = 0; i < 5; ++i) odometry.next(camera.tracked(), robot);

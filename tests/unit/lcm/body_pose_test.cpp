@@ -11,11 +11,6 @@
 namespace edgeslam {
 namespace {
 
-void expectSame(const Pose& a, const Pose& b, double tolerance) {
-  EXPECT_LT(rotationAngle(a.rotation, b.rotation), 1e-7);
-  EXPECT_LT((a.translation - b.translation).norm(), tolerance);
-}
-
 Vector6d smallUpdate(Random& random, double size) {
   Vector6d update;
   update << random.vector(size), random.vector(size);

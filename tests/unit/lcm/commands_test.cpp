@@ -7,6 +7,7 @@
 
 #include "edgeslam/pose_t.hpp"
 #include "unit/geometry/scene_fixture.h"
+#include "unit/lcm/encoded_message.h"
 
 namespace edgeslam {
 namespace {
@@ -19,13 +20,6 @@ command_t scaleCommand(std::int64_t from, std::int64_t to, double distance_m) {
   command.to_utime = to;
   command.distance_m = distance_m;
   return command;
-}
-
-template <class Message>
-std::vector<std::uint8_t> encoded(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
 }
 
 CheckedCommand check(const std::vector<std::uint8_t>& bytes) { return checkCommand(bytes.data(), bytes.size(), 5); }

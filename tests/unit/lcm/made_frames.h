@@ -1,6 +1,8 @@
 // Frames of a camera that moves at a constant twist.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include "drivers/lcm/body_pose.h"
 #include "unit/geometry/scene_fixture.h"
 
@@ -31,6 +33,11 @@ inline FrameResult frameWithoutPose(std::int64_t index, TrackingState state, con
   frame.covariance.setZero();
   frame.world_covariance.setZero();
   return frame;
+}
+
+inline void expectSame(const Pose& a, const Pose& b, double tolerance_m = 1e-9) {
+  EXPECT_LT(rotationAngle(a.rotation, b.rotation), 1e-7);
+  EXPECT_LT((a.translation - b.translation).norm(), tolerance_m);
 }
 
 inline Pose randomPose(Random& random) { return {random.rotation(random.uniform(0, 3.1)), random.vector(3)}; }

@@ -8,19 +8,13 @@
 #include <limits>
 #include <vector>
 
+#include "unit/lcm/encoded_message.h"
 #include "unit/lcm/made_frames.h"
 
 namespace edgeslam {
 namespace {
 
 constexpr std::size_t packet_bytes = 1400;
-
-template <class Message>
-std::vector<std::uint8_t> encoded(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  EXPECT_EQ(message.encode(bytes.data(), 0, static_cast<int>(bytes.size())), static_cast<int>(bytes.size()));
-  return bytes;
-}
 
 template <class To, class From>
 To decodedAs(const From& message) {

@@ -8,12 +8,13 @@
 
 #include "bot_core/pose_t.hpp"
 #include "edgeslam/command_t.hpp"
+#include "unit/lcm/encoded_message.h"
 
 namespace edgeslam {
 namespace {
 
 // The type as others publish it.
-bot_core::pose_t goodMessage() {
+bot_core::pose_t goodPoseMessage() {
   bot_core::pose_t message{};
   message.utime = 123456789;
   message.pos[0] = 1;
@@ -24,19 +25,12 @@ bot_core::pose_t goodMessage() {
   return message;
 }
 
-template <class Message>
-std::vector<std::uint8_t> bytesOf(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
-
-std::optional<OdometryPose> checked(const std::vector<std::uint8_t>& bytes) {
+std::optional<OdometryPose> checkedPose(const std::vector<std::uint8_t>& bytes) {
   return checkOdometry(bytes.data(), bytes.size());
 }
 
 TEST(Odometry, IsThePublishedPose) {
-  const std::optional<OdometryPose> pose = checked(bytesOf(goodMessage()));
+  const std::optional<OdometryPose> pose = checkedPose(encoded(goodPoseMessage()));
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->utime, 123456789);
   EXPECT_EQ(pose->local_T_body.translation, Eigen::Vector3d(1, -2, 0.5));
@@ -47,44 +41,44 @@ TEST(Odometry, WhatCannotBeIsNone) {
   const double not_a_number = std::numeric_limits<double>::quiet_NaN(), infinite = HUGE_VAL;
   for (const double bad : {not_a_number, infinite, -infinite, 1e8, 1e300}) {
     for (int i = 0; i < 3; ++i) {
-      bot_core::pose_t message = goodMessage();
+      bot_core::pose_t message = goodPoseMessage();
       message.pos[i] = bad;
-      EXPECT_FALSE(checked(bytesOf(message))) << bad;
+      EXPECT_FALSE(checkedPose(encoded(message))) << bad;
     }
     for (int i = 0; i < 4; ++i) {
-      bot_core::pose_t message = goodMessage();
+      bot_core::pose_t message = goodPoseMessage();
       message.orientation[i] = bad;
-      EXPECT_FALSE(checked(bytesOf(message))) << bad;
+      EXPECT_FALSE(checkedPose(encoded(message))) << bad;
     }
   }
   for (const double factor : {0.0, 0.5, 1.02}) {
-    bot_core::pose_t message = goodMessage();
+    bot_core::pose_t message = goodPoseMessage();
     for (double& number : message.orientation) number *= factor;
-    EXPECT_FALSE(checked(bytesOf(message))) << factor;
+    EXPECT_FALSE(checkedPose(encoded(message))) << factor;
   }
   for (const std::int64_t utime : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()}) {
-    bot_core::pose_t message = goodMessage();
+    bot_core::pose_t message = goodPoseMessage();
     message.utime = utime;
-    EXPECT_FALSE(checked(bytesOf(message))) << utime;
+    EXPECT_FALSE(checkedPose(encoded(message))) << utime;
   }
 }
 
 TEST(Odometry, VelocitiesAreNotLookedAt) {
-  bot_core::pose_t message = goodMessage();
+  bot_core::pose_t message = goodPoseMessage();
   message.vel[0] = message.accel[1] = message.rotation_rate[2] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(checked(bytesOf(message)));
+  EXPECT_TRUE(checkedPose(encoded(message)));
 }
 
 TEST(Odometry, OtherBytesAreNone) {
-  const std::vector<std::uint8_t> good = bytesOf(goodMessage());
+  const std::vector<std::uint8_t> good = encoded(goodPoseMessage());
   for (std::size_t size = 0; size < good.size(); ++size) EXPECT_FALSE(checkOdometry(good.data(), size));
   std::vector<std::uint8_t> longer = good;
   longer.push_back(0);
-  EXPECT_FALSE(checked(longer));
+  EXPECT_FALSE(checkedPose(longer));
   std::vector<std::uint8_t> another_type = good;
   another_type[0] ^= 1;
-  EXPECT_FALSE(checked(another_type));
-  EXPECT_FALSE(checked(bytesOf(command_t{})));
+  EXPECT_FALSE(checkedPose(another_type));
+  EXPECT_FALSE(checkedPose(encoded(command_t{})));
 }
 
 }  // namespace

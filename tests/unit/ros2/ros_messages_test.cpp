@@ -43,11 +43,6 @@ Matrix6d matrixOf(const RosCovariance& rows) {
   return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(rows.data());
 }
 
-void expectSame(const Pose& a, const Pose& b) {
-  EXPECT_NEAR((a.translation - b.translation).norm(), 0, 1e-9);
-  EXPECT_NEAR(rotationAngle(a.rotation, b.rotation), 0, 1e-7);
-}
-
 TEST(RosMessages, AheadIsX) {
   SentFrames frames(metricForwardRobot());
   RosFrame frame;
