@@ -6,8 +6,8 @@ LiveChannels::LiveChannels(int width, int height, std::size_t observations) : fr
     message.frame.observations.reserve(observations);
     message.frame.straight_edges.reserve(observations);
   });
-  results.forEachSlot([](PublishedFrame& published) {
-    published.result.reason.reserve(longest_reason);
+  results.forEachSlot([&](PublishedFrame& published) {
+    reserve(observations, published.result);
     published.problem.reserve(longest_reason);
   });
 }

@@ -36,7 +36,7 @@ constexpr std::chrono::milliseconds idle_time{1};  // before a thread looks agai
 enum class Stopping { no, settle, at_once };
 
 struct LiveChannels {
-  // Frames of this size [px]; messages that hold so many observations without taking memory.
+  // Frames of this size [px]; messages and results that hold so many observations without taking memory.
   LiveChannels(int width, int height, std::size_t observations);
 
   FrameSlots frames;                                          // capture to tracking

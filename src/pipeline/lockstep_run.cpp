@@ -22,7 +22,7 @@ LockstepRun::LockstepRun(const Camera& camera, const Settings& settings, std::in
       tracking_(camera, settings),
       mapping_(camera, settings),
       places_(camera, settings),
-      record_(camera) {
+      record_(camera, settings.tracking.location.pose) {
   if (drawings <= 0) {
     drawing_interval_ = 0;
   } else if (expected_frames > 0) {

@@ -39,7 +39,7 @@ class LockstepRun {
   const std::vector<std::string>& events() const { return record_.events(); }
   // Lets mapping and places come to their end, after the last frame: map() is final then.
   void settle();
-  // Final poses, carried by their keyframes, and the map. Call once, at the end; settles.
+  // Final poses, and the map. Call once, at the end; settles.
   RunResult finish();
 
  private:

@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "pipeline/final_poses.h"
 #include "pipeline/map_records.h"
 #include "pipeline/metric_result.h"
 
 namespace edgeslam {
+namespace {
+
+constexpr std::size_t most_seen_bytes = std::size_t{64} << 20;  // some 8000 frames of 500 points
+
+}  // namespace
 
 FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
   if (unreadable) ++result_.unreadable_frames;
@@ -18,7 +24,18 @@ FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
     record.odometry_resets = odometry->resets;
   }
   carried_.push_back(inWorldOfToday({frame.reference, frame.reference_T_camera, frame.world}));
+  seen_bytes_ += record.seen.bytes();
+  keepWithinMemory();
   return record;
+}
+
+// Frames of long ago stay where their keyframes carry them.
+void RunRecord::keepWithinMemory() {
+  for (; seen_bytes_ > most_seen_bytes; ++first_seen_) {
+    SeenPoints& seen = result_.frames[first_seen_].seen;
+    seen_bytes_ -= seen.bytes();
+    seen.forget();
+  }
 }
 
 void RunRecord::add(MappingReport report) {
@@ -96,8 +113,13 @@ int RunRecord::mainWorld() const {
 }
 
 RunResult RunRecord::finish(const Mapper& mapper) {
+  if (!mapper.map().keyframes.empty()) giveMap(mapper);
+  for (FrameRecord& frame : result_.frames) frame.seen.forget();
+  return std::move(result_);
+}
+
+void RunRecord::giveMap(const Mapper& mapper) {
   const Map& map = mapper.map();
-  if (map.keyframes.empty()) return std::move(result_);
   for (std::size_t i = 0; i < result_.frames.size(); ++i) {
     if (const std::optional<WorldPose> pose = finalPose(map, carried_[i])) giveFinalPose(i, *pose);
   }
@@ -111,6 +133,7 @@ RunResult RunRecord::finish(const Mapper& mapper) {
     const std::size_t place = placeOf(keyframe.frame_index);
     if (place < result_.frames.size()) result_.frames[place].is_keyframe = true;
   }
+  locateFramesAnew(mapper.camera(), map, pose_, result_.frames);
   result_.camera = mapper.camera();
   result_.found = map.found;
   result_.keyframes = keyframeRecords(map, first_keyframe_);
@@ -122,7 +145,6 @@ RunResult RunRecord::finish(const Mapper& mapper) {
   result_.lacking_for_wheels = mapper.lackingForWheels();
   result_.contradiction_of_wheels = mapper.contradictionOfWheels();
   makeMetric(map, result_);
-  return std::move(result_);
 }
 
 }  // namespace edgeslam

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "adjustment/pose_adjustment.h"
 #include "mapping/mapper.h"
 #include "pipeline/messages.h"
 #include "pipeline/run_result.h"
@@ -16,7 +17,8 @@ namespace edgeslam {
 
 class RunRecord {
  public:
-  explicit RunRecord(const Camera& camera) { result_.camera = camera; }
+  // `pose`: how frames are located anew when the run ends.
+  explicit RunRecord(const Camera& camera, const PoseOptions& pose = {}) : pose_(pose) { result_.camera = camera; }
 
   // Before the first frame: keyframes before `first` are of the run that made a saved map.
   void goOnFrom(KeyframeId first) { first_keyframe_ = first; }
@@ -27,7 +29,7 @@ class RunRecord {
   // Until finish().
   const std::vector<std::string>& events() const { return result_.events; }
 
-  // Final poses, carried by their keyframes, and the map. Call once, at the end.
+  // Final poses, and the map. Call once, at the end.
   RunResult finish(const Mapper& mapper);
 
  private:
@@ -40,14 +42,19 @@ class RunRecord {
   std::size_t placeOf(std::int64_t frame_index) const;
   CarriedPose inWorldOfToday(CarriedPose carried) const;
   void join(const WorldJoin& join);
+  void keepWithinMemory();
   std::optional<WorldPose> finalPose(const Map& map, const CarriedPose& carried) const;
+  void giveMap(const Mapper& mapper);
   void giveFinalPose(std::size_t place, const WorldPose& pose);
   int mainWorld() const;
 
+  PoseOptions pose_;
   RunResult result_;
   CameraOdometry odometry_;
   KeyframeId first_keyframe_ = 0;    // of this run
   std::deque<CarriedPose> carried_;  // by frame record
+  std::size_t seen_bytes_ = 0;       // of what frames saw, and is kept ...
+  std::size_t first_seen_ = 0;       // ... from this frame record on
   std::map<KeyframeId, CulledKeyframe> culled_;
   std::map<int, WorldJoin> joins_;  // by the younger world
 };

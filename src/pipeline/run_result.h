@@ -20,7 +20,7 @@ namespace edgeslam {
 
 // A frame's result as it was given out at the time, and what became of it.
 struct FrameRecord : FrameResult {
-  bool has_final_pose = false;  // good, and carried by its keyframe's final pose
+  bool has_final_pose = false;  // good, and in the map as it came to be (final_poses.h)
   int final_world = -1;         // that the final pose is in, after all joining; -1: none
   Pose final_world_T_camera;
   bool is_keyframe = false;

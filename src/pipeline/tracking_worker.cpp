@@ -17,7 +17,8 @@ TrackingWorker::TrackingWorker(const Camera& camera, const Settings& settings)
     : recovers_(settings.mapping.recovery_enabled && !settings.tracking.map_is_frozen),
       is_looked_for_(settings.relocalisation_enabled || recovers_),
       tracker_(camera, settings.edges, settings.points, settings.tracking) {
-  for (std::string* text : {&result_.reason, &not_found_, &start_reason_}) text->reserve(longest_reason);
+  reserve(static_cast<std::size_t>(settings.points.count), result_);
+  for (std::string* text : {&not_found_, &start_reason_}) text->reserve(longest_reason);
   for_mapping_.observations.reserve(static_cast<std::size_t>(settings.points.count));
   for_mapping_.straight_edges.reserve(static_cast<std::size_t>(settings.points.count));
 }

@@ -79,7 +79,7 @@ LiveReplayResult replayLive(FrameSource& source, const Camera& camera, const Set
         std::make_shared<FlightRecorder>(replay.record_folder, replay.description, recordingLimits(settings.recording));
     if (replay.map_in) keepMap(*replay.map_in, camera, replay.record_folder);
   }
-  RunRecord record(camera);
+  RunRecord record(camera, settings.tracking.location.pose);
   LiveObserver observer;
   observer.frame = [&](const FrameResult& result, const std::string& problem) {
     record.add(result, !problem.empty());

@@ -37,6 +37,7 @@ void clear(FrameResult& result) {
   result.covariance.setZero();
   result.world_covariance.setZero();
   result.reference = -1;
+  result.seen.clear();
   result.has_motion = result.previous_position_was_held = false;
   result.previous_time_ns = result.map_corrections = 0;
   result.previous_T_camera = Pose();
@@ -45,6 +46,11 @@ void clear(FrameResult& result) {
   result.noise_factor = 1;
   result.times = StageTimes();
   result.latency_ms = -1;
+}
+
+void reserve(std::size_t tracks, FrameResult& result) {
+  result.reason.reserve(longest_reason);
+  result.seen.reserve(tracks);
 }
 
 }  // namespace edgeslam

@@ -8,6 +8,7 @@
 
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe.h"
+#include "tracking/seen_points.h"
 #include "tracking/stage_times.h"
 #include "wheels/wheel_scale.h"
 
@@ -48,6 +49,7 @@ struct FrameResult {
   Matrix6d covariance = Matrix6d::Zero(), world_covariance = Matrix6d::Zero();
   KeyframeId reference = -1;  // the keyframe that carries this frame's final pose, or -1
   Pose reference_T_camera;
+  SeenPoints seen;  // what the pose was measured by, for the final one; none in a frozen map, which stays as it is
   // How the camera moved since the frame that was located before, both as the map is now, so that corrections of the
   // map are no motion. Predicted where the pose is, and where it was lost.
   bool has_motion = false;
@@ -70,5 +72,8 @@ Eigen::Matrix<float, 6, 1> standardDeviation(const FrameResult& result);
 
 // As made anew, but with its memory.
 void clear(FrameResult& result);
+
+// Gives it the memory that it needs for so many tracks.
+void reserve(std::size_t tracks, FrameResult& result);
 
 }  // namespace edgeslam

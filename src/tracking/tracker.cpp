@@ -352,6 +352,9 @@ void Tracker::tell(Work& work) {
   result.covariance = frame_.covariance;
   result.tracked_points = static_cast<int>(frame_.tracks.size());
   result.mapped_points = frame_.inlier_count;
+  if (!options_.map_is_frozen && !frame_.position_is_held && !frame_.is_by_wheels) {
+    result.seen.assign(camera_, frame_.tracks, most_tracks_);
+  }
   if (!mapStands()) {
     result.reason = view_.waiting_for;
     return;

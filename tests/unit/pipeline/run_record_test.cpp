@@ -95,6 +95,18 @@ TEST(RunRecord, AWorldThatHadToGoLeavesItsPoses) {
   EXPECT_EQ(result.frames[0].final_world_T_camera.translation, Eigen::Vector3d(7, 1, 0));
 }
 
+TEST(RunRecord, WhatFramesOfLongAgoSawIsForgotten) {
+  const std::vector<Track> tracks(4096);
+  FrameResult frame = trackedIn(0, 0, 1);
+  frame.seen.assign(Camera(), tracks, tracks.size());
+  RunRecord record{Camera()};
+  const FrameRecord& first = record.add(frame, false);
+  const FrameRecord* latest = nullptr;
+  for (frame.index = 1; frame.index < 1500; ++frame.index) latest = &record.add(frame, false);
+  EXPECT_EQ(latest->seen.size(), tracks.size());
+  EXPECT_EQ(first.seen.size(), 0U) << "1500 frames of 64 KiB take more than there is for them";
+}
+
 TEST(RunRecord, WithoutAMapThereAreNoFinalPoses) {
   RunRecord record{Camera()};
   record.add(trackedIn(0, 5, 1), false);

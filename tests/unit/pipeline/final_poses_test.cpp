@@ -1,0 +1,131 @@
+// Final poses: where a map changed after a frame was located, its pose is found once more; what its points do not tell
+// stays.
+#include "pipeline/final_poses.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/mapping/landmark_walk.h"
+
+namespace edgeslam {
+namespace {
+
+constexpr int walked_keyframes = 10;
+
+test::Walk walkedMap() {
+  test::Walk walk(1, 900);
+  for (int k = 0; k < walked_keyframes; ++k) walk.step();
+  return walk;
+}
+
+// Beside the sixth keyframe, which sees points that several see.
+Pose besideKeyframe(const test::Walk& walk) {
+  Vector6d step;
+  step << 0.05, -0.03, 0.04, 0.01, -0.02, 0.01;
+  return retract(walk.poses[5], step);
+}
+
+// What a camera there sees of the landmarks, across edges of the direction `normal`.
+SeenPoints seenFrom(const test::Walk& walk, const Camera& camera, const MovingCamera& moving,
+                    const Eigen::Vector2f& normal, float sigma_tangent) {
+  std::vector<Track> tracks;
+  for (std::size_t i = 0; i < walk.landmarks.size(); ++i) {
+    const Eigen::Vector3d in_camera = moving.world_T_camera.inverse() * walk.landmarks[i];
+    if (!inFront(camera, in_camera)) continue;
+    const Eigen::Vector2d pixel = projectToRow(camera, moving.twist, in_camera);
+    if (!insideImage(camera, pixel, 5)) continue;
+    Track track;
+    track.id = static_cast<PointId>(i);
+    track.pixel = pixel.cast<float>();
+    track.normal = normal;
+    track.sigma_normal = 0.2F;
+    track.sigma_tangent = sigma_tangent;
+    tracks.push_back(track);
+  }
+  SeenPoints seen;
+  seen.assign(camera, tracks, tracks.size());
+  return seen;
+}
+
+Pose movedBy(const Pose& pose, double x, double y, double z) {
+  Vector6d step = Vector6d::Zero();
+  step.head<3>() << x, y, z;
+  return retract(pose, step);
+}
+
+double distance(const Pose& a, const Pose& b) { return (a.translation - b.translation).norm(); }
+
+TEST(FinalPoses, AFrameThatWasCarriedToAWrongPlaceIsFoundWhereItWas) {
+  const test::Walk walk = walkedMap();
+  const Pose truth = besideKeyframe(walk);
+  const SeenPoints seen = seenFrom(walk, test::Walk::camera(), truth, {1, 0}, 0.2F);
+  ASSERT_GT(seen.size(), 100U);
+  const std::optional<Pose> pose =
+      locateAnew(test::Walk::camera(), walk.map, 0, seen, movedBy(truth, 0.04, -0.03, 0.03), {});
+  ASSERT_TRUE(pose);
+  EXPECT_LT(distance(*pose, truth), 0.002);
+}
+
+TEST(FinalPoses, WhatTheEdgesDoNotTellStaysAsItWasCarried) {
+  const test::Walk walk = walkedMap();
+  const Pose truth = besideKeyframe(walk);
+  const SeenPoints seen = seenFrom(walk, test::Walk::camera(), truth, {0, 1}, 1000);  // level edges
+  const Pose carried = movedBy(truth, 0.03, 0.03, 0);
+  const std::optional<Pose> pose = locateAnew(test::Walk::camera(), walk.map, 0, seen, carried, {});
+  ASSERT_TRUE(pose);
+  const Eigen::Vector3d left = (truth.inverse() * *pose).translation;
+  EXPECT_NEAR(left.x(), 0.03, 0.003) << "along the edges";
+  EXPECT_NEAR(left.y(), 0, 0.003) << "across them";
+}
+
+TEST(FinalPoses, WithTooFewPointsOrInAnotherWorldThereIsNone) {
+  const test::Walk walk = walkedMap();
+  const Pose truth = besideKeyframe(walk);
+  const SeenPoints seen = seenFrom(walk, test::Walk::camera(), truth, {1, 0}, 0.2F);
+  EXPECT_FALSE(locateAnew(test::Walk::camera(), walk.map, 1, seen, truth, {}));
+  Map few = walk.map;
+  while (few.points.size() > 20) few.points.erase(few.points.begin());
+  EXPECT_FALSE(locateAnew(test::Walk::camera(), few, 0, seen, truth, {}));
+  EXPECT_FALSE(locateAnew(test::Walk::camera(), walk.map, 0, {}, truth, {}));
+}
+
+// Frames of a steady motion by a camera whose rows are read over 30 ms, as they come out where that is not known.
+std::deque<FrameRecord> rollingFrames(const test::Walk& walk, const Camera& camera, std::vector<Pose>& truth) {
+  Twist twist;
+  twist << 0.5, -0.2, 0.3, 0.2, 0.3, -0.4;
+  std::deque<FrameRecord> frames;
+  for (int i = 0; i < 6; ++i) {
+    const Pose pose = besideKeyframe(walk) * movedFor(twist, 0.033 * i);
+    truth.push_back(pose);
+    FrameRecord& frame = frames.emplace_back();
+    frame.time_ns = std::int64_t{33'000'000} * i;
+    frame.has_final_pose = true;
+    frame.final_world = 0;
+    frame.seen = seenFrom(walk, camera, {pose, twist}, {1, 0}, 0.2F);
+    Camera still = camera;
+    still.readout_s = 0;
+    frame.final_world_T_camera = locateAnew(still, walk.map, 0, frame.seen, pose, {}).value_or(pose);
+  }
+  return frames;
+}
+
+TEST(FinalPoses, TheMotionOfARollingShutterIsThatOfTheNeighbouringFrames) {
+  const test::Walk walk = walkedMap();
+  Camera camera = test::Walk::camera();
+  camera.readout_s = 0.03;
+  std::vector<Pose> truth;
+  std::deque<FrameRecord> frames = rollingFrames(walk, camera, truth);
+  const std::deque<FrameRecord> before = frames;
+  frames[2].is_keyframe = true;
+  locateFramesAnew(camera, walk.map, {}, frames);
+  double error_before = 0, error = 0;
+  for (const std::size_t i : {1U, 3U, 4U}) {
+    error_before += distance(before[i].final_world_T_camera, truth[i]);
+    error += distance(frames[i].final_world_T_camera, truth[i]);
+  }
+  EXPECT_LT(error, 0.3 * error_before);
+  EXPECT_EQ(frames[2].final_world_T_camera.translation, before[2].final_world_T_camera.translation)
+      << "a keyframe has its pose by the adjustment";
+}
+
+}  // namespace
+}  // namespace edgeslam
