@@ -295,6 +295,7 @@ void Tracker::keepEdgesOfStart(FollowedFrame& frame) {
 
 void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& work) {
   reuseMap(frame);
+  work.clock.finished(Stage::map_reuse);
   const StraightEdges straight = straightEdges(camera_, *frame.edges, options_.straight_edges, &scratch_);
   putOnStraightEdges(camera_, straight, frame);
   const KeyframeId id = keyframes_.make(frame, preparation_.accuracy());
@@ -353,7 +354,7 @@ void Tracker::tell(Work& work) {
   result.tracked_points = static_cast<int>(frame_.tracks.size());
   result.mapped_points = frame_.inlier_count;
   if (!options_.map_is_frozen && !frame_.position_is_held && !frame_.is_by_wheels) {
-    result.seen.assign(camera_, frame_.tracks, most_tracks_);
+    pack(camera_, frame_.tracks, most_tracks_, result.seen);
   }
   if (!mapStands()) {
     result.reason = view_.waiting_for;
