@@ -19,10 +19,10 @@ constexpr int rounds_of_rolling_shutter = 2;  // the frames' poses tell the moti
 PoseObservations observationsOf(const Camera& camera, const Map& map, int world, const SeenPoints& seen,
                                 const Pose& world_T_camera) {
   PoseObservations observations;
-  observations.reserve(seen.size());
+  observations.reserve(seen.points.size());
   const Pose camera_T_world = world_T_camera.inverse();
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const SeenPoints::Seen one = seen[i];
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    const SeenPoint one = seenPoint(seen, i);
     const auto found = map.points.find(one.point);
     if (found == map.points.end()) continue;
     const MapPoint& point = found->second;
@@ -71,7 +71,7 @@ std::optional<Pose> locateAnew(const Camera& camera, const Map& map, int world, 
   return pose.world_T_camera;
 }
 
-void locateFramesAnew(const Camera& camera, const Map& map, const PoseOptions& options,
+void locateFramesAnew(const Camera& camera, const Map& map, const PoseOptions& options, SeenRecord& seen,
                       std::deque<FrameRecord>& frames) {
   std::vector<Pose> carried;
   for (const FrameRecord& frame : frames) carried.push_back(frame.final_world_T_camera);
@@ -81,7 +81,7 @@ void locateFramesAnew(const Camera& camera, const Map& map, const PoseOptions& o
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const FrameRecord& frame = frames[i];
       if (!frame.has_final_pose || frame.is_keyframe) continue;
-      poses[i] = locateAnew(camera, map, frame.final_world, frame.seen, {carried[i], motionAt(frames, i)}, options);
+      poses[i] = locateAnew(camera, map, frame.final_world, seen.of(i), {carried[i], motionAt(frames, i)}, options);
     }
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (poses[i]) frames[i].final_world_T_camera = *poses[i];

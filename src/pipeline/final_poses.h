@@ -9,6 +9,7 @@
 #include "adjustment/pose_adjustment.h"
 #include "map/map.h"
 #include "pipeline/run_result.h"
+#include "pipeline/seen_record.h"
 
 namespace edgeslam {
 
@@ -17,8 +18,8 @@ namespace edgeslam {
 std::optional<Pose> locateAnew(const Camera& camera, const Map& map, int world, const SeenPoints& seen,
                                const MovingCamera& carried, const PoseOptions& options);
 
-// All that have a final pose and are no keyframes.
-void locateFramesAnew(const Camera& camera, const Map& map, const PoseOptions& options,
+// All that have a final pose and are no keyframes. `seen`: by them.
+void locateFramesAnew(const Camera& camera, const Map& map, const PoseOptions& options, SeenRecord& seen,
                       std::deque<FrameRecord>& frames);
 
 }  // namespace edgeslam

@@ -8,12 +8,6 @@
 #include "pipeline/metric_result.h"
 
 namespace edgeslam {
-namespace {
-
-constexpr std::size_t most_seen_bytes = std::size_t{64} << 20;  // some 8000 frames of 500 points
-
-}  // namespace
-
 FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
   if (unreadable) ++result_.unreadable_frames;
   FrameRecord& record = result_.frames.emplace_back();
@@ -24,18 +18,19 @@ FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
     record.odometry_resets = odometry->resets;
   }
   carried_.push_back(inWorldOfToday({frame.reference, frame.reference_T_camera, frame.world}));
-  seen_bytes_ += record.seen.bytes();
-  keepWithinMemory();
+  keep(record);
   return record;
 }
 
-// Frames of long ago stay where their keyframes carry them.
-void RunRecord::keepWithinMemory() {
-  for (; seen_bytes_ > most_seen_bytes; ++first_seen_) {
-    SeenPoints& seen = result_.frames[first_seen_].seen;
-    seen_bytes_ -= seen.bytes();
-    seen.forget();
-  }
+// What it saw is kept until its final pose is found.
+void RunRecord::keep(FrameRecord& frame) {
+  seen_.add(frame.seen);
+  frame.seen = {};
+  if (told_of_seen_ || seen_.problem().empty()) return;
+  told_of_seen_ = true;
+  result_.events.push_back("frame " + std::to_string(frame.index) + ": no room for what frames see (" +
+                           seen_.problem() +
+                           "): from here on final poses are as their keyframes carry them; TMPDIR names another disk");
 }
 
 void RunRecord::add(MappingReport report) {
@@ -114,7 +109,6 @@ int RunRecord::mainWorld() const {
 
 RunResult RunRecord::finish(const Mapper& mapper) {
   if (!mapper.map().keyframes.empty()) giveMap(mapper);
-  for (FrameRecord& frame : result_.frames) frame.seen.forget();
   return std::move(result_);
 }
 
@@ -133,7 +127,7 @@ void RunRecord::giveMap(const Mapper& mapper) {
     const std::size_t place = placeOf(keyframe.frame_index);
     if (place < result_.frames.size()) result_.frames[place].is_keyframe = true;
   }
-  locateFramesAnew(mapper.camera(), map, pose_, result_.frames);
+  locateFramesAnew(mapper.camera(), map, pose_, seen_, result_.frames);
   result_.camera = mapper.camera();
   result_.found = map.found;
   result_.keyframes = keyframeRecords(map, first_keyframe_);

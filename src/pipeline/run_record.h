@@ -10,6 +10,7 @@
 #include "mapping/mapper.h"
 #include "pipeline/messages.h"
 #include "pipeline/run_result.h"
+#include "pipeline/seen_record.h"
 #include "tracking/frame_result.h"
 #include "visual_odometry/odometry_frame.h"
 
@@ -42,7 +43,7 @@ class RunRecord {
   std::size_t placeOf(std::int64_t frame_index) const;
   CarriedPose inWorldOfToday(CarriedPose carried) const;
   void join(const WorldJoin& join);
-  void keepWithinMemory();
+  void keep(FrameRecord& frame);
   std::optional<WorldPose> finalPose(const Map& map, const CarriedPose& carried) const;
   void giveMap(const Mapper& mapper);
   void giveFinalPose(std::size_t place, const WorldPose& pose);
@@ -53,8 +54,8 @@ class RunRecord {
   CameraOdometry odometry_;
   KeyframeId first_keyframe_ = 0;    // of this run
   std::deque<CarriedPose> carried_;  // by frame record
-  std::size_t seen_bytes_ = 0;       // of what frames saw, and is kept ...
-  std::size_t first_seen_ = 0;       // ... from this frame record on
+  SeenRecord seen_;                  // by frame record
+  bool told_of_seen_ = false;        // that it cannot be kept
   std::map<KeyframeId, CulledKeyframe> culled_;
   std::map<int, WorldJoin> joins_;  // by the younger world
 };

@@ -37,7 +37,7 @@ void clear(FrameResult& result) {
   result.covariance.setZero();
   result.world_covariance.setZero();
   result.reference = -1;
-  result.seen.clear();
+  result.seen.points.clear();
   result.has_motion = result.previous_position_was_held = false;
   result.previous_time_ns = result.map_corrections = 0;
   result.previous_T_camera = Pose();
@@ -50,7 +50,7 @@ void clear(FrameResult& result) {
 
 void reserve(std::size_t tracks, FrameResult& result) {
   result.reason.reserve(longest_reason);
-  result.seen.reserve(tracks);
+  result.seen.points.reserve(tracks);
 }
 
 }  // namespace edgeslam

@@ -15,18 +15,18 @@ std::uint16_t inSteps(double value) {
 
 }  // namespace
 
-void SeenPoints::assign(const Camera& camera, const std::vector<Track>& tracks, std::size_t most) {
-  points_.clear();
+void pack(const Camera& camera, const std::vector<Track>& tracks, std::size_t most, SeenPoints& seen) {
+  seen.points.clear();
   if (tracks.empty()) return;
-  first_ = tracks.front().id;
-  pixel_step_ = std::max(camera.width, camera.height) / most_steps;
+  seen.first = tracks.front().id;
+  seen.pixel_step = std::max(camera.width, camera.height) / most_steps;
   for (const Track& track : tracks) {
-    const PointId after_first = track.id - first_;  // ids ascend
-    if (points_.size() == most || after_first > std::numeric_limits<std::uint32_t>::max()) break;
-    Packed& packed = points_.emplace_back();
+    const PointId after_first = track.id - seen.first;
+    if (seen.points.size() == most || after_first > std::numeric_limits<std::uint32_t>::max()) break;
+    PackedPoint& packed = seen.points.emplace_back();
     packed.after_first = static_cast<std::uint32_t>(after_first);
-    packed.x = inSteps(track.pixel.x() / pixel_step_);
-    packed.y = inSteps(track.pixel.y() / pixel_step_);
+    packed.x = inSteps(track.pixel.x() / seen.pixel_step);
+    packed.y = inSteps(track.pixel.y() / seen.pixel_step);
     packed.normal_x = Eigen::half(track.normal.x());
     packed.normal_y = Eigen::half(track.normal.y());
     packed.sigma_normal = Eigen::half(track.sigma_normal);
@@ -34,11 +34,11 @@ void SeenPoints::assign(const Camera& camera, const std::vector<Track>& tracks, 
   }
 }
 
-SeenPoints::Seen SeenPoints::operator[](std::size_t i) const {
-  const Packed& packed = points_[i];
+SeenPoint seenPoint(const SeenPoints& seen, std::size_t index) {
+  const PackedPoint& packed = seen.points[index];
   const Eigen::Vector2d normal(static_cast<double>(packed.normal_x), static_cast<double>(packed.normal_y));
-  return {first_ + packed.after_first,
-          {pixel_step_ * Eigen::Vector2d(packed.x, packed.y), normal.normalized(),
+  return {seen.first + packed.after_first,
+          {seen.pixel_step * Eigen::Vector2d(packed.x, packed.y), normal.normalized(),
            static_cast<double>(packed.sigma_normal), static_cast<double>(packed.sigma_tangent)}};
 }
 

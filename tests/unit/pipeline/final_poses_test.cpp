@@ -42,7 +42,7 @@ SeenPoints seenFrom(const test::Walk& walk, const Camera& camera, const MovingCa
     tracks.push_back(track);
   }
   SeenPoints seen;
-  seen.assign(camera, tracks, tracks.size());
+  pack(camera, tracks, tracks.size(), seen);
   return seen;
 }
 
@@ -58,7 +58,7 @@ TEST(FinalPoses, AFrameThatWasCarriedToAWrongPlaceIsFoundWhereItWas) {
   const test::Walk walk = walkedMap();
   const Pose truth = besideKeyframe(walk);
   const SeenPoints seen = seenFrom(walk, test::Walk::camera(), truth, {1, 0}, 0.2F);
-  ASSERT_GT(seen.size(), 100U);
+  ASSERT_GT(seen.points.size(), 100U);
   const std::optional<Pose> pose =
       locateAnew(test::Walk::camera(), walk.map, 0, seen, movedBy(truth, 0.04, -0.03, 0.03), {});
   ASSERT_TRUE(pose);
@@ -89,7 +89,8 @@ TEST(FinalPoses, WithTooFewPointsOrInAnotherWorldThereIsNone) {
 }
 
 // Frames of a steady motion by a camera whose rows are read over 30 ms, as they come out where that is not known.
-std::deque<FrameRecord> rollingFrames(const test::Walk& walk, const Camera& camera, std::vector<Pose>& truth) {
+std::deque<FrameRecord> rollingFrames(const test::Walk& walk, const Camera& camera, std::vector<Pose>& truth,
+                                      SeenRecord& seen) {
   Twist twist;
   twist << 0.5, -0.2, 0.3, 0.2, 0.3, -0.4;
   std::deque<FrameRecord> frames;
@@ -100,10 +101,10 @@ std::deque<FrameRecord> rollingFrames(const test::Walk& walk, const Camera& came
     frame.time_ns = std::int64_t{33'000'000} * i;
     frame.has_final_pose = true;
     frame.final_world = 0;
-    frame.seen = seenFrom(walk, camera, {pose, twist}, {1, 0}, 0.2F);
+    seen.add(seenFrom(walk, camera, {pose, twist}, {1, 0}, 0.2F));
     Camera still = camera;
     still.readout_s = 0;
-    frame.final_world_T_camera = locateAnew(still, walk.map, 0, frame.seen, pose, {}).value_or(pose);
+    frame.final_world_T_camera = locateAnew(still, walk.map, 0, seen.of(frames.size() - 1), pose, {}).value_or(pose);
   }
   return frames;
 }
@@ -113,10 +114,11 @@ TEST(FinalPoses, TheMotionOfARollingShutterIsThatOfTheNeighbouringFrames) {
   Camera camera = test::Walk::camera();
   camera.readout_s = 0.03;
   std::vector<Pose> truth;
-  std::deque<FrameRecord> frames = rollingFrames(walk, camera, truth);
+  SeenRecord seen;
+  std::deque<FrameRecord> frames = rollingFrames(walk, camera, truth, seen);
   const std::deque<FrameRecord> before = frames;
   frames[2].is_keyframe = true;
-  locateFramesAnew(camera, walk.map, {}, frames);
+  locateFramesAnew(camera, walk.map, {}, seen, frames);
   double error_before = 0, error = 0;
   for (const std::size_t i : {1U, 3U, 4U}) {
     error_before += distance(before[i].final_world_T_camera, truth[i]);

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <string>
+
 namespace edgeslam {
 namespace {
 
@@ -95,16 +98,27 @@ TEST(RunRecord, AWorldThatHadToGoLeavesItsPoses) {
   EXPECT_EQ(result.frames[0].final_world_T_camera.translation, Eigen::Vector3d(7, 1, 0));
 }
 
-TEST(RunRecord, WhatFramesOfLongAgoSawIsForgotten) {
-  const std::vector<Track> tracks(4096);
+TEST(RunRecord, WhatFramesSawTakesNoMemory) {
   FrameResult frame = trackedIn(0, 0, 1);
-  frame.seen.assign(Camera(), tracks, tracks.size());
+  frame.seen.points.resize(1000);
   RunRecord record{Camera()};
-  const FrameRecord& first = record.add(frame, false);
-  const FrameRecord* latest = nullptr;
-  for (frame.index = 1; frame.index < 1500; ++frame.index) latest = &record.add(frame, false);
-  EXPECT_EQ(latest->seen.size(), tracks.size());
-  EXPECT_EQ(first.seen.size(), 0U) << "1500 frames of 64 KiB take more than there is for them";
+  EXPECT_EQ(record.add(frame, false).seen.points.capacity(), 0U);
+  EXPECT_TRUE(record.events().empty());
+}
+
+TEST(RunRecord, ThatWhatFramesSeeCannotBeKeptIsToldOnce) {
+  const char* before = std::getenv("TMPDIR");
+  const std::string temporary = before ? before : "/tmp";
+  setenv("TMPDIR", "/dev/null/nowhere", 1);
+  RunRecord record{Camera()};
+  setenv("TMPDIR", temporary.c_str(), 1);
+  FrameResult frame = trackedIn(0, 0, 1);
+  frame.seen.points.resize(10);
+  for (frame.index = 0; frame.index < 3; ++frame.index) record.add(frame, false);
+  ASSERT_EQ(record.events().size(), 1U);
+  EXPECT_EQ(record.events()[0].rfind("frame 0: no room for what frames see (", 0), 0U) << record.events()[0];
+  const RunResult result = record.finish(mapperWith(0));
+  for (const FrameRecord& of_run : result.frames) EXPECT_TRUE(of_run.has_final_pose);
 }
 
 TEST(RunRecord, WithoutAMapThereAreNoFinalPoses) {

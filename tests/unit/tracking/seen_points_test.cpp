@@ -36,10 +36,10 @@ TEST(SeenPoints, AreWhatTheTracksWere) {
                                    static_cast<float>(test::uniform(random, 0.05, 3)), id % 2 == 0 ? 1000.F : 0.4F));
   }
   SeenPoints seen;
-  seen.assign(wideCamera(), tracks, tracks.size());
-  ASSERT_EQ(seen.size(), tracks.size());
+  pack(wideCamera(), tracks, tracks.size(), seen);
+  ASSERT_EQ(seen.points.size(), tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const auto [point, measurement] = seen[i];
+    const auto [point, measurement] = seenPoint(seen, i);
     const Measurement was = measurementOf(tracks[i]);
     EXPECT_EQ(point, tracks[i].id);
     EXPECT_LT((measurement.pixel - was.pixel).norm(), 0.03);
@@ -54,11 +54,11 @@ TEST(SeenPoints, AreNoMoreThanThereIsMemoryFor) {
   std::vector<Track> tracks;
   for (PointId id = 0; id < 20; ++id) tracks.push_back(measuredTrack(id, {100, 100}, 0, 1, 1));
   SeenPoints seen;
-  seen.assign(wideCamera(), tracks, 12);
-  ASSERT_EQ(seen.size(), 12U);
-  EXPECT_EQ(seen[11].point, 11);
-  seen.assign(wideCamera(), {}, 12);
-  EXPECT_EQ(seen.size(), 0U);
+  pack(wideCamera(), tracks, 12, seen);
+  ASSERT_EQ(seen.points.size(), 12U);
+  EXPECT_EQ(seenPoint(seen, 11).point, 11);
+  pack(wideCamera(), {}, 12, seen);
+  EXPECT_TRUE(seen.points.empty());
 }
 
 }  // namespace
