@@ -1,5 +1,6 @@
 #include "files/scratch_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,7 +12,7 @@ namespace edgeslam {
 ScratchFile::ScratchFile(std::size_t most) : most_(most) {
   const char* folder = std::getenv("TMPDIR");
   std::string name = std::string(folder ? folder : "/tmp") + "/edgeslam-XXXXXX";
-  const int descriptor = mkstemp(name.data());
+  const int descriptor = mkostemp(name.data(), O_CLOEXEC);
   if (descriptor >= 0) {
     unlink(name.c_str());
     file_.reset(fdopen(descriptor, "w+b"));
