@@ -24,9 +24,10 @@ FrameRecord& RunRecord::add(const FrameResult& frame, bool unreadable) {
 
 // What it saw is kept until its final pose is found.
 void RunRecord::keep(FrameRecord& frame) {
+  const bool sees_something = !frame.seen.points.empty();
   seen_.add(frame.seen);
   frame.seen = {};
-  if (told_of_seen_ || seen_.problem().empty()) return;
+  if (told_of_seen_ || !sees_something || seen_.problem().empty()) return;
   told_of_seen_ = true;
   result_.events.push_back("frame " + std::to_string(frame.index) + ": no room for what frames see (" +
                            seen_.problem() +

@@ -113,10 +113,12 @@ TEST(RunRecord, ThatWhatFramesSeeCannotBeKeptIsToldOnce) {
   RunRecord record{Camera()};
   setenv("TMPDIR", temporary.c_str(), 1);
   FrameResult frame = trackedIn(0, 0, 1);
+  record.add(frame, false);
+  EXPECT_TRUE(record.events().empty()) << "it saw nothing that is to be kept";
   frame.seen.points.resize(10);
-  for (frame.index = 0; frame.index < 3; ++frame.index) record.add(frame, false);
+  for (frame.index = 1; frame.index < 4; ++frame.index) record.add(frame, false);
   ASSERT_EQ(record.events().size(), 1U);
-  EXPECT_EQ(record.events()[0].rfind("frame 0: no room for what frames see (", 0), 0U) << record.events()[0];
+  EXPECT_EQ(record.events()[0].rfind("frame 1: no room for what frames see (", 0), 0U) << record.events()[0];
   const RunResult result = record.finish(mapperWith(0));
   for (const FrameRecord& of_run : result.frames) EXPECT_TRUE(of_run.has_final_pose);
 }
