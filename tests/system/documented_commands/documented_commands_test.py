@@ -3,8 +3,9 @@
 names that it uses, and without a camera or a network. A command that is refused fails, as does one whose options
 --help does not know, and one that cannot be run as it stands and is not in how_they_run.py.
 
-usage: documented_commands_test.py PROGRAM REPOSITORY RECORDING BOARD_FRAMES [test...]
-RECORDING: a simulated one with ground truth; BOARD_FRAMES: of a chessboard 9x6:25mm"""
+usage: documented_commands_test.py PROGRAM REPOSITORY RECORDING BOARD_FRAMES SWINGING [test...]
+RECORDING: a simulated one with ground truth; BOARD_FRAMES: of a chessboard 9x6:25mm; SWINGING: a simulated recording
+that tells how its inertial unit sits"""
 import functools
 import os
 import pathlib
@@ -21,7 +22,7 @@ import unittest
 import how_they_run
 from documentation import Command, commands_of, configurations_of
 
-PROGRAM, REPOSITORY, RECORDING, BOARD_FRAMES = (pathlib.Path(path).resolve() for path in sys.argv[1:5])
+PROGRAM, REPOSITORY, RECORDING, BOARD_FRAMES, SWINGING = (pathlib.Path(path).resolve() for path in sys.argv[1:6])
 LONGEST_S = 400  # a busy machine
 # Messages go to a file and come from one: no network is needed.
 ENVIRONMENT = {**os.environ, "LCM_DEFAULT_URL": "file://sent.log?mode=w"}
@@ -65,6 +66,10 @@ class Prepared:
         self.copy(RECORDING, "my_data/first")
         self.copy(RECORDING, "my_data/second")
         self.copy(BOARD_FRAMES, "board_camera")
+        (self.folder / "swinging").symlink_to(SWINGING)  # large, and only read
+        # Not to find a board in many frames takes longer than to find one.
+        self.expect("edgeslam", "simulate", "panels_textured", "--output", "short", "--width", "320", "--height", "240",
+                    "--frames", "40", "--imu")
         self.copy(RECORDING / "camera.yaml", "cameras/my_camera.yaml")
         self.write("my_robot.yaml", "camera: {calibration: my_recording/camera.yaml}\ncapture: {device: my_recording}\n")
         self.write("changed.yaml", "camera: {calibration: my_recording/camera.yaml}\npoints: {count: 400}\n")
@@ -92,7 +97,7 @@ class Prepared:
     def for_page(self, page, folder):
         """A copy, less what the page's own commands make."""
         target = pathlib.Path(folder) / page.replace("/", "_")
-        shutil.copytree(self.folder, target)
+        shutil.copytree(self.folder, target, symlinks=True)
         if page in ("docs/debugging.md",):
             shutil.rmtree(target / "failure")
         if page in ("docs/calibrating.md",):  # its robot's camera looks at the board
@@ -258,4 +263,4 @@ and `lcm: {ttl: 1}` in a sentence; `a::b: {c}` is none.
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[5:]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[6:]])

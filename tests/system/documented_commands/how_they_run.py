@@ -19,9 +19,6 @@ PLACEHOLDERS = "words in capitals stand for something"
 NO_CAMERA = "no camera is there: a recording stands for it, as capture.device may name one"
 # Widths and frames are small, so that all of it takes a minute.
 SMALL = "--width 160 --height 120 --frames 3"
-# Long enough to tell how the unit sits.
-SIMULATED_SWINGING = ("edgeslam simulate panels_textured --output swinging --width 320 --height 240 --frames 400 --imu "
-                      "--force")
 
 INSTEAD = {
     "edgeslam run --config FILE [--source INPUT] [--record DIR] [--map-in FILE] [--map-out FILE]": Instead(
@@ -80,16 +77,16 @@ INSTEAD = {
         PLACEHOLDERS + "; of this one's few frames none tells the readout", ["edgeslam calibrate --readout my_recording"],
         exit_code=1, says="does not tell the readout"),
     "edgeslam calibrate --imu RECORDING [--config FILE] [--output imu.yaml] [--force]": Instead(
-        SYNOPSIS, [SIMULATED_SWINGING, "edgeslam calibrate --imu swinging --config my_robot.yaml --output imu.yaml --force"]),
+        SYNOPSIS, ["edgeslam calibrate --imu swinging --config my_robot.yaml --output imu.yaml --force"]),
     "edgeslam calibrate --imu RECORDING --board BOARD [--config FILE] [--output imu.yaml] [--force]": Instead(
         SYNOPSIS + "; this one shows no board",
-        ["edgeslam calibrate --imu swinging --board chessboard:9x6:25mm --config my_robot.yaml --output board_imu.yaml --force"],
+        ["edgeslam calibrate --imu short --board chessboard:9x6:25mm --config my_robot.yaml --output board_imu.yaml --force"],
         exit_code=1, says="the board is found in no frame"),
     "edgeslam calibrate --imu": Instead(
         "the name of this way of calibrating", ["edgeslam calibrate --imu"], exit_code=2, says="INPUT is required"),
     "edgeslam calibrate --imu my_recording --output imu.yaml": Instead(
         "this one has few frames and no inertial data",
-        [SIMULATED_SWINGING, "edgeslam calibrate --imu swinging --output imu.yaml"]),
+        ["edgeslam calibrate --imu swinging --output imu.yaml"]),
     "edgeslam map info FILE... [--picture PNG] [--json] [--force]": Instead(
         SYNOPSIS, ["edgeslam map info saved.map robot.map", "edgeslam map info robot.map --json --picture robot.png --force"]),
     "edgeslam map join FILE FILE... --output FILE [--config FILE] [--force]": Instead(
