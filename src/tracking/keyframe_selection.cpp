@@ -9,7 +9,7 @@ KeyframeDecision selectKeyframe(const KeyframeEvidence& evidence, int image_widt
   const bool bare =
       evidence.mapped < options.fewest_mapped && evidence.on_straight_edges > options.bare_share * evidence.tracks;
   const double rotation_deg = bare ? std::min(options.rotation_deg, options.bare_rotation_deg) : options.rotation_deg;
-  if (evidence.rotation_deg > rotation_deg) return {KeyframeChoice::previous_frame, "rotation"};
+  if (evidence.rotation_deg > rotation_deg) return {KeyframeChoice::current_frame, "rotation"};
   if (evidence.tracks < options.track_share * evidence.average_tracks)
     return {KeyframeChoice::previous_frame, "few tracks"};
   const double fewest_mapped =

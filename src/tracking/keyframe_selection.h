@@ -6,8 +6,10 @@
 namespace edgeslam {
 
 struct KeyframeOptions {
-  double rotation_deg = 15;  // P8: rotation to the last keyframe [deg] ...
-  // ... where the scene is bare: fewer map points than `fewest_mapped`, and this share of the tracks on straight edges.
+  // P8: rotation to the last keyframe [deg]. Unlike the paper's, it is the current frame that becomes one: the camera
+  // was located in it, and need not be located in it anew.
+  double rotation_deg = 15;
+  // Where the scene is bare: fewer map points than `fewest_mapped`, and this share of the tracks on straight edges.
   // There few lines have to tell everything, and several keyframes must have seen each before it leaves the image.
   double bare_rotation_deg = 7;
   double bare_share = 0.25;

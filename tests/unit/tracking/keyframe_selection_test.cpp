@@ -34,7 +34,7 @@ struct Criterion {
 std::vector<Criterion> criteria() {
   using E = KeyframeEvidence;
   return {
-      {"rotation", KeyframeChoice::previous_frame, [](E& e) { e.rotation_deg = 14.9; },
+      {"rotation", KeyframeChoice::current_frame, [](E& e) { e.rotation_deg = 14.9; },
        [](E& e) { e.rotation_deg = 15.1; }},
       {"few tracks", KeyframeChoice::previous_frame, [](E& e) { e.tracks = 313; }, [](E& e) { e.tracks = 311; }},
       {"few map points", KeyframeChoice::previous_frame, [](E& e) { e.mapped = 250; }, [](E& e) { e.mapped = 249; }},
@@ -70,7 +70,7 @@ TEST(KeyframeSelection, InFrontOfBareWallsASmallerRotationIsEnough) {
     EXPECT_EQ(selectKeyframe(evidence, width, KeyframeOptions()).choice, KeyframeChoice::none);
     evidence.rotation_deg = 7.1;
     const KeyframeDecision decision = selectKeyframe(evidence, width, KeyframeOptions());
-    EXPECT_EQ(decision.choice, on_straight_edges > 125 ? KeyframeChoice::previous_frame : KeyframeChoice::none);
+    EXPECT_EQ(decision.choice, on_straight_edges > 125 ? KeyframeChoice::current_frame : KeyframeChoice::none);
     evidence.mapped = 250;
     EXPECT_EQ(selectKeyframe(evidence, width, KeyframeOptions()).choice, KeyframeChoice::none);
   }
@@ -80,7 +80,7 @@ TEST(KeyframeSelection, InFrontOfBareWallsASmallerRotationIsEnough) {
   KeyframeEvidence evidence = calm();
   evidence.on_straight_edges = 400;
   evidence.mapped = 249;
-  EXPECT_EQ(selectKeyframe(evidence, width, options).choice, KeyframeChoice::previous_frame);
+  EXPECT_EQ(selectKeyframe(evidence, width, options).choice, KeyframeChoice::current_frame);
 }
 
 TEST(KeyframeSelection, ACameraThatStandsStillMakesNoneHoweverLong) {
