@@ -72,8 +72,10 @@ class RollingShutter {
 
   bool residual(const PreparedObservation& o, Eigen::Vector2d& residual, Matrix26d& jacobian) const {
     Matrix26d by_twist;
-    if (!rowResidual(camera_, o.measured, frame_, twist_, o.row_time_s, o.point, residual, jacobian, by_twist))
+    if (!rowResidual(camera_, o.measured, frame_, twist_, o.row_time_s, o.point, residual, jacobian,
+                     is_tied_ ? &by_twist : nullptr)) {
       return false;
+    }
     if (is_tied_) jacobian.noalias() += by_twist * twist_by_pose_;
     return true;
   }

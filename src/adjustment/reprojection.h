@@ -67,10 +67,10 @@ inline bool poseResidual(const Camera& camera, const WhitenedPixel& measured, co
 }
 
 // The same for a camera that moves by `twist` and reads the measured row `seconds` after the middle one; the
-// derivatives are by the middle row's pose and by the twist.
+// derivatives are by the middle row's pose and, where asked for, by the twist.
 inline bool rowResidual(const Camera& camera, const WhitenedPixel& measured, const CameraFrame& frame,
                         const Twist& twist, double seconds, const Eigen::Vector3d& point, Eigen::Vector2d& residual,
-                        Matrix26d& by_pose, Matrix26d& by_twist) {
+                        Matrix26d& by_pose, Matrix26d* by_twist) {
   const Eigen::Vector3d in_camera = frame.world_R_camera.transpose() * (point - frame.centre);
   const Eigen::Vector3d turn = seconds * twist.tail<3>();
   const Eigen::Matrix3d row_R_camera = rotationExp(turn).toRotationMatrix().transpose();
@@ -80,8 +80,9 @@ inline bool rowResidual(const Camera& camera, const WhitenedPixel& measured, con
   const Matrix23d by_point_in_camera = by_point * row_R_camera;
   by_pose.leftCols<3>() = -by_point_in_camera;
   by_pose.rightCols<3>().noalias() = by_point_in_camera * skew(in_camera);
-  by_twist.leftCols<3>() = -seconds * by_point_in_camera;
-  by_twist.rightCols<3>().noalias() = seconds * (by_point * skew(seen)) * rightJacobian(turn);
+  if (!by_twist) return true;
+  by_twist->leftCols<3>() = -seconds * by_point_in_camera;
+  by_twist->rightCols<3>().noalias() = seconds * (by_point * skew(seen)) * rightJacobian(turn);
   return true;
 }
 

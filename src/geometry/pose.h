@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace edgeslam {
 
@@ -34,14 +35,21 @@ inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return m;
 }
 
+// Up to this angle [rad], squared, series of five terms are exact to the last bits. They are no slower than a sine, and
+// are the same on every processor.
+constexpr double most_squared_for_series = 0.02;
+
 // Unit quaternion of a rotation vector [rad].
 inline Eigen::Quaterniond rotationExp(const Eigen::Vector3d& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  if (angle < 1e-8) {
-    return Eigen::Quaterniond(1.0, 0.5 * rotation_vector.x(), 0.5 * rotation_vector.y(), 0.5 * rotation_vector.z())
-        .normalized();
+  const double s = rotation_vector.squaredNorm();
+  if (!(s < most_squared_for_series)) {
+    const double angle = std::sqrt(s);
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, rotation_vector / angle));
   }
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, rotation_vector / angle));
+  // Of half the angle; the sine over the angle.
+  const double cosine = 1 - 1.0 / 8 * s * (1 - 1.0 / 48 * s * (1 - 1.0 / 120 * s * (1 - 1.0 / 224 * s)));
+  const double sine = 0.5 - 1.0 / 48 * s * (1 - 1.0 / 80 * s * (1 - 1.0 / 168 * s * (1 - 1.0 / 288 * s)));
+  return {cosine, sine * rotation_vector.x(), sine * rotation_vector.y(), sine * rotation_vector.z()};
 }
 
 // Rotation vector [rad], of length at most pi, of a unit quaternion.

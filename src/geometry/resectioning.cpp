@@ -10,6 +10,7 @@
 #include <random>
 
 #include "geometry/robust_estimation.h"
+#include "geometry/squared.h"
 #include "geometry/three_point_pose.h"
 
 namespace edgeslam {
@@ -36,27 +37,51 @@ Normalized normalized(const Points& points, const Points& bearings, const Indice
   return result;
 }
 
-double angularError(const Pose& camera_T_world, const Eigen::Vector3d& point, const Eigen::Vector3d& bearing) {
-  const Eigen::Vector3d seen = camera_T_world * point;
-  return std::atan2(seen.cross(bearing).norm(), seen.dot(bearing));
-}
+// Whether the angle between where a point is seen and its bearing is below a threshold.
+class Agreement {
+ public:
+  // `threshold`: below a right angle [rad].
+  Agreement(const Pose& camera_T_world, double threshold)
+      : camera_R_world_(camera_T_world.rotation.toRotationMatrix()),
+        translation_(camera_T_world.translation),
+        square_of_tangent_(squared(std::tan(threshold))) {
+    assert(threshold < 0.5 * M_PI);
+  }
+
+  bool operator()(const Eigen::Vector3d& point, const Eigen::Vector3d& bearing) const {
+    const Eigen::Vector3d seen = camera_R_world_ * point + translation_;
+    const double along = seen.dot(bearing);
+    return along > 0 && seen.cross(bearing).squaredNorm() < square_of_tangent_ * along * along;
+  }
+
+ private:
+  Eigen::Matrix3d camera_R_world_;
+  Eigen::Vector3d translation_;
+  double square_of_tangent_;
+};
 
 // Those of `among` within `threshold` [rad] under a pose.
 Indices within(const Pose& camera_T_world, const Points& points, const Points& bearings, const Indices& among,
                double threshold) {
+  const Agreement agrees(camera_T_world, threshold);
   Indices kept(among.get_allocator());
   kept.reserve(among.size());
   for (const std::size_t i : among) {
-    if (angularError(camera_T_world, points[i], bearings[i]) < threshold) kept.push_back(i);
+    if (agrees(points[i], bearings[i])) kept.push_back(i);
   }
   return kept;
 }
 
-std::size_t countWithin(const Pose& camera_T_world, const Points& points, const Points& bearings, const Indices& among,
-                        double threshold) {
-  return static_cast<std::size_t>(std::count_if(among.begin(), among.end(), [&](std::size_t i) {
-    return angularError(camera_T_world, points[i], bearings[i]) < threshold;
-  }));
+// How many of `among` agree; given up where it can no longer be more than `beaten`.
+std::size_t countMore(std::size_t beaten, const Agreement& agrees, const Points& points, const Points& bearings,
+                      const Indices& among) {
+  std::size_t count = 0, left = among.size();
+  for (const std::size_t i : among) {
+    if (count + left <= beaten) break;
+    --left;
+    if (agrees(points[i], bearings[i])) ++count;
+  }
+  return count;
 }
 
 Pose poseOf(const cv::Mat& rotation_vector, const cv::Mat& translation) {
@@ -104,8 +129,9 @@ Pose sampleConsensus(const Points& points, const Points& bearings, const Indices
                                                        {bearings[order[0]], bearings[order[1]], bearings[order[2]]});
     for (int k = 0; k < poses.count; ++k) {
       const Pose& candidate = poses.camera_T_world[static_cast<std::size_t>(k)];
-      if (!(angularError(candidate, points[fourth], bearings[fourth]) < threshold)) continue;
-      const std::size_t count = countWithin(candidate, points, bearings, usable, threshold);
+      const Agreement agrees(candidate, threshold);
+      if (!agrees(points[fourth], bearings[fourth])) continue;
+      const std::size_t count = countMore(best_count, agrees, points, bearings, usable);
       if (count <= best_count) continue;
       best_count = count;
       best = candidate;
@@ -125,7 +151,8 @@ Pose overConsensus(const Pose& pose, const Points& points, const Points& bearing
   cv::solvePnP(consensus.points, consensus.pixels, cv::Matx33d::eye(), cv::noArray(), rotation_vector, translation,
                false, cv::SOLVEPNP_EPNP);
   const Pose candidate = poseOf(rotation_vector, translation);
-  return countWithin(candidate, points, bearings, usable, threshold) >= inliers.size() ? candidate : pose;
+  const std::size_t agree = countMore(inliers.size() - 1, Agreement(candidate, threshold), points, bearings, usable);
+  return agree >= inliers.size() ? candidate : pose;
 }
 
 // Normal equations of the errors [rad] of the bearings, across each, with Tukey's weights of width `width` [rad].

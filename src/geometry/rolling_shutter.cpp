@@ -48,11 +48,19 @@ Eigen::Vector2d projectToRow(const Camera& camera, const Twist& twist, const Eig
 }
 
 Eigen::Matrix3d rightJacobian(const Eigen::Vector3d& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  const Eigen::Matrix3d cross = skew(rotation_vector);
-  if (angle < 1e-4) return Eigen::Matrix3d::Identity() - 0.5 * cross + cross * cross / 6;
-  return Eigen::Matrix3d::Identity() - (1 - std::cos(angle)) / (angle * angle) * cross +
-         (angle - std::sin(angle)) / (angle * angle * angle) * cross * cross;
+  const double s = rotation_vector.squaredNorm();
+  // (1 - cos) / angle^2 and (angle - sin) / angle^3.
+  double first = 0.5 - 1.0 / 24 * s * (1 - 1.0 / 30 * s * (1 - 1.0 / 56 * s * (1 - 1.0 / 90 * s)));
+  double second = 1.0 / 6 - 1.0 / 120 * s * (1 - 1.0 / 42 * s * (1 - 1.0 / 72 * s * (1 - 1.0 / 110 * s)));
+  if (!(s < most_squared_for_series)) {
+    const double angle = std::sqrt(s);
+    first = (1 - std::cos(angle)) / s;
+    second = (angle - std::sin(angle)) / (s * angle);
+  }
+  // The square of the cross product is v v^T - v^T v.
+  Eigen::Matrix3d jacobian = second * rotation_vector * rotation_vector.transpose() - first * skew(rotation_vector);
+  jacobian.diagonal().array() += 1 - second * s;
+  return jacobian;
 }
 
 }  // namespace edgeslam

@@ -129,12 +129,12 @@ TEST_P(ReprojectionOfModel, RowDerivativesMatchDifferences) {
       Eigen::Vector2d residual = Eigen::Vector2d::Zero();
       Matrix26d by_pose, by_twist;
       EXPECT_TRUE(
-          rowResidual(camera, measured, cameraFrame(moved), moving, seconds, point, residual, by_pose, by_twist));
+          rowResidual(camera, measured, cameraFrame(moved), moving, seconds, point, residual, by_pose, &by_twist));
       return residual;
     };
     Eigen::Vector2d residual;
     Matrix26d by_pose, by_twist, numeric_by_twist;
-    ASSERT_TRUE(rowResidual(camera, measured, cameraFrame(pose), twist, seconds, point, residual, by_pose, by_twist));
+    ASSERT_TRUE(rowResidual(camera, measured, cameraFrame(pose), twist, seconds, point, residual, by_pose, &by_twist));
     EXPECT_LT((by_pose - numericByPose(pose, [&](const Pose& moved) { return at(moved, twist); })).norm(),
               1e-5 * (1 + by_pose.norm()));
     constexpr double kStep = 1e-5;

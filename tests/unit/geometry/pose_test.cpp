@@ -61,6 +61,18 @@ TEST(Pose, ExpIsTheMatrixExponentialToFirstOrder) {
   }
 }
 
+TEST(Pose, TheSeriesOfASmallRotationIsExactToTheLastBits) {
+  Random random(8);
+  for (const double share : {1e-12, 1e-6, 1e-3, 0.1, 0.5, 0.9, 0.999, 1.001}) {
+    const double angle = share * std::sqrt(most_squared_for_series);
+    const Eigen::Vector3d axis = random.direction();
+    const Eigen::Quaterniond exact(Eigen::AngleAxisd(angle, axis));
+    const Eigen::Quaterniond rotation = rotationExp(angle * axis);
+    EXPECT_LT((rotation.coeffs() - exact.coeffs()).norm(), 4e-16) << share;
+    EXPECT_LT((rotation.vec() - exact.vec()).norm(), 1e-15 * angle) << share;
+  }
+}
+
 TEST(Pose, SkewIsTheCrossProduct) {
   Random random(5);
   const Eigen::Vector3d a = random.vector(2), b = random.vector(2);

@@ -115,5 +115,13 @@ TEST_F(RollingShutterTest, DerivativesMatchDifferences) {
   }
 }
 
+TEST_F(RollingShutterTest, TheSeriesOfASmallTurnGoesOnAsTheSinesOfALargeOne) {
+  const Eigen::Vector3d axis = vector(1).normalized();
+  const double angle = std::sqrt(most_squared_for_series);
+  const Eigen::Matrix3d below = rightJacobian((1 - 1e-12) * angle * axis);
+  const Eigen::Matrix3d above = rightJacobian((1 + 1e-12) * angle * axis);
+  EXPECT_LT((above - below).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace edgeslam
