@@ -35,8 +35,8 @@ inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return m;
 }
 
-// Up to this angle [rad], squared, series of five terms are exact to the last bits. They are no slower than a sine, and
-// are the same on every processor.
+// The square of the angle [rad] up to which a series of five terms gives sines and cosines to the last bits. It needs
+// no call of a library, whose last bits hang on the processor.
 constexpr double most_squared_for_series = 0.02;
 
 // Unit quaternion of a rotation vector [rad].
@@ -46,7 +46,7 @@ inline Eigen::Quaterniond rotationExp(const Eigen::Vector3d& rotation_vector) {
     const double angle = std::sqrt(s);
     return Eigen::Quaterniond(Eigen::AngleAxisd(angle, rotation_vector / angle));
   }
-  // Of half the angle; the sine over the angle.
+  // Of half the angle: its cosine, and its sine over the angle.
   const double cosine = 1 - 1.0 / 8 * s * (1 - 1.0 / 48 * s * (1 - 1.0 / 120 * s * (1 - 1.0 / 224 * s)));
   const double sine = 0.5 - 1.0 / 48 * s * (1 - 1.0 / 80 * s * (1 - 1.0 / 168 * s * (1 - 1.0 / 288 * s)));
   return {cosine, sine * rotation_vector.x(), sine * rotation_vector.y(), sine * rotation_vector.z()};

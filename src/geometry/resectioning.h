@@ -21,9 +21,9 @@ struct ResectioningResult {
   int inlier_count = 0;
 };
 
-// `points` in the world frame, `bearings` unit in the camera frame, same size; `threshold` [rad] for an inlier;
-// `iterations` bounds RANSAC's. Same seed, same result. Not found: fewer than 6 correspondences or inliers, or inliers
-// all on one line.
+// `points` in the world frame, `bearings` unit in the camera frame, same size; `threshold` [rad] for an inlier, less
+// than a right angle; `iterations` bounds RANSAC's. Same seed, same result. Not found: fewer than 6 correspondences or
+// inliers, or inliers all on one line.
 ResectioningResult resection(const Vectors3& points, const Vectors3& bearings, double threshold, std::uint64_t seed,
                              int iterations = 200);
 

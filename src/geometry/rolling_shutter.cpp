@@ -57,7 +57,7 @@ Eigen::Matrix3d rightJacobian(const Eigen::Vector3d& rotation_vector) {
     first = (1 - std::cos(angle)) / s;
     second = (angle - std::sin(angle)) / (s * angle);
   }
-  // The square of the cross product is v v^T - v^T v.
+  // The square of skew(v) is v v^T - |v|^2 I.
   Eigen::Matrix3d jacobian = second * rotation_vector * rotation_vector.transpose() - first * skew(rotation_vector);
   jacobian.diagonal().array() += 1 - second * s;
   return jacobian;
