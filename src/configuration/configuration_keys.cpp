@@ -373,6 +373,10 @@ Keys methodKeys(Settings& settings) {
       forUsers({"tracking.new_map", &tracking.worlds_enabled, "", 0, 0,
                 "a new map is begun beside the old one where the camera stays lost"}),
       forUsers({"tracking.new_map_after_s", &tracking.new_world_seconds, "s", 0.1, 3600, "so long after it was lost"}),
+      forUsers(
+          {"tracking.predicted_for_s", &tracking.predicted_seconds, "s", 0.1, 3600,
+           "with an inertial unit it is begun so long after, and poses are predicted meanwhile; so long in a frozen "
+           "map, too"}),
       {"tracking.most_noise", &tracking.noise.most, "", 1, 100,
        "the noise that a camera shows scales what is presumed at most so many times; 1: it is not measured"},
       {"tracking.least_inlier_share", &tracking.location.acceptance.least_inlier_share, "", 0, 1,

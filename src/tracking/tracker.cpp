@@ -478,7 +478,9 @@ void Tracker::lose(Work& work) {
 }
 
 bool Tracker::isLostBriefly(std::int64_t time_ns) const {
-  return static_cast<double>(time_ns - lost_since_ns_) * 1e-9 <= options_.new_world_seconds;
+  const bool is_predicted = options_.map_is_frozen || options_.inertia;
+  const double briefly = is_predicted ? options_.predicted_seconds : options_.new_world_seconds;
+  return static_cast<double>(time_ns - lost_since_ns_) * 1e-9 <= briefly;
 }
 
 void Tracker::beLostSince(std::int64_t time_ns) {

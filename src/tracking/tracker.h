@@ -50,9 +50,10 @@ struct TrackerOptions {
   std::optional<WheelOptions> wheels;  // beneath the camera; none: the camera alone
   WheelsOnlyOptions wheels_only;
   bool worlds_enabled = true;
-  // So long after a loss a new world is begun beside those that were lost, or, in a frozen map, poses are no longer
-  // predicted.
-  double new_world_seconds = 1;
+  // So long after a loss a new world is begun beside those that were lost ...
+  double new_world_seconds = 0.5;
+  // ... or after so long, where inertia may tell the pose meanwhile. In a frozen map poses are predicted for so long.
+  double predicted_seconds = 1;
   // The map is only localised in: no frame becomes a keyframe, and no points are chosen. Only a run that goes on with a
   // saved map can be so.
   bool map_is_frozen = false;

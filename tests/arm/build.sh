@@ -26,7 +26,7 @@ if [[ ! -e $folder/sysroot.made ]]; then
 fi
 echo "sysroot: ${SECONDS} s"
 cmake -S "$sources" -B "$folder/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DEDGESLAM_SYSROOT="$folder/sysroot" \
-  -DEDGESLAM_DEBUG_SYMBOLS=ON \
+  -DEDGESLAM_DEBUG_SYMBOLS=ON -DCMAKE_UNITY_BUILD=ON \
   --toolchain "$sources/toolchains/aarch64-linux-gnu.cmake" > "$folder/configure.log" 2>&1 || { tail -20 "$folder/configure.log"; exit 1; }
 echo "configured: ${SECONDS} s"
 cmake --build "$folder/build" --parallel 1 --target "$@" > "$folder/build.log" 2>&1 || { tail -40 "$folder/build.log"; exit 1; }
