@@ -372,7 +372,8 @@ Keys methodKeys(Settings& settings) {
        "a point that misses the pose so often in a row is dropped"},
       forUsers({"tracking.new_map", &tracking.worlds_enabled, "", 0, 0,
                 "a new map is begun beside the old one where the camera stays lost"}),
-      forUsers({"tracking.new_map_after_s", &tracking.new_world_seconds, "s", 0.1, 3600, "so long after it was lost"}),
+      forUsers({"tracking.new_map_after_s", &tracking.new_world_seconds, "s", 0.1, 3600,
+                "so long after the first sharp frame that was lost"}),
       forUsers(
           {"tracking.predicted_for_s", &tracking.predicted_seconds, "s", 0.1, 3600,
            "with an inertial unit it is begun so long after, and poses are predicted meanwhile; so long in a frozen "

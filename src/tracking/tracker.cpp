@@ -18,6 +18,8 @@ constexpr std::size_t most_found_again = 4096;
 constexpr int fewest_of_frozen_map = 40;  // points of it that must agree with a pose
 constexpr double few_left = 0.8;          // of the tracks there were when points of a frozen map were last looked for
 
+double secondsSince(std::int64_t from_ns, std::int64_t to_ns) { return 1e-9 * static_cast<double>(to_ns - from_ns); }
+
 // Without tracks beside the map's points, which hold the others to account as the map grows, a few points at its edge
 // may agree with a pose that slides away, and a position that is held with one that was never measured.
 LocationOptions locationOptions(const TrackerOptions& options) {
@@ -82,7 +84,7 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   const bool is_sharp = preparation_.prepare(frame_index, time_ns, grey, frame_, work.clock);  // P1 to P4
   frame_.wheels = motion_.wheelsAt(time_ns);
   frame_.is_by_wheels = false;
-  const double without_s = lost_since_ns_ < 0 ? 0 : static_cast<double>(time_ns - lost_since_ns_) * 1e-9;
+  const double without_s = lost_since_ns_ < 0 ? 0 : secondsSince(lost_since_ns_, time_ns);
   const bool any_will_do = !mapStands() || is_lost_ || without_s > options_.blur_gate.longest_rejection_s;
   if (!is_sharp && !any_will_do) {
     beLostSince(time_ns);
@@ -135,7 +137,7 @@ bool Tracker::locate(Work& work) {
   figures_ = {};
   if (!last_.isThere()) return false;
   const bool is_lost = lost_since_ns_ >= 0;
-  if (is_lost && static_cast<double>(work.time_ns - lost_since_ns_) * 1e-9 > options_.regain_seconds) return false;
+  if (is_lost && secondsSince(lost_since_ns_, work.time_ns) > options_.regain_seconds) return false;
   scratch_.release();
   const bool regains = is_lost || last_was_found_again_;
   const LocationPrior prior{motion_.predict(last_, work.time_ns, view_).world_T_camera, regains, located_in_a_row_ >= 2,
@@ -225,7 +227,10 @@ bool Tracker::goOnFromSpare() {
 
 bool Tracker::isToBeginWorld(std::int64_t time_ns) const {
   if (!options_.worlds_enabled || options_.map_is_frozen || !mapStands() || lost_since_ns_ < 0) return false;
-  return !isLostBriefly(time_ns) && !carriedByWheels(time_ns);
+  const bool is_due = options_.inertia ? !isPredictedStill(time_ns)
+                                       : lost_sharp_since_ns_ >= 0 &&
+                                             secondsSince(lost_sharp_since_ns_, time_ns) > options_.new_world_seconds;
+  return is_due && !carriedByWheels(time_ns);
 }
 
 // What was there is no longer tracked, but is looked for.
@@ -468,19 +473,18 @@ void Tracker::lose(Work& work) {
   describe(figures_, lost_reason_);
   predict(work.time_ns, lost_reason_, result);
   beLostSince(work.time_ns);
+  if (lost_sharp_since_ns_ < 0) lost_sharp_since_ns_ = work.time_ns;
   frame_is_lost_ = is_lost_ = true;
   if (isGoodPose(result.state)) return;  // by inertia or the wheels
   // What a frozen map does not show is bridged; a map that grows shows what was there a moment ago.
-  if (options_.map_is_frozen && result.has_pose && isLostBriefly(work.time_ns)) return;
+  if (options_.map_is_frozen && result.has_pose && isPredictedStill(work.time_ns)) return;
   result.state = TrackingState::lost;
   result.has_pose = false;
   result.world = -1;
 }
 
-bool Tracker::isLostBriefly(std::int64_t time_ns) const {
-  const bool is_predicted = options_.map_is_frozen || options_.inertia;
-  const double briefly = is_predicted ? options_.predicted_seconds : options_.new_world_seconds;
-  return static_cast<double>(time_ns - lost_since_ns_) * 1e-9 <= briefly;
+bool Tracker::isPredictedStill(std::int64_t time_ns) const {
+  return secondsSince(lost_since_ns_, time_ns) <= options_.predicted_seconds;
 }
 
 void Tracker::beLostSince(std::int64_t time_ns) {
@@ -489,7 +493,7 @@ void Tracker::beLostSince(std::int64_t time_ns) {
 }
 
 void Tracker::beFound() {
-  lost_since_ns_ = -1;
+  lost_since_ns_ = lost_sharp_since_ns_ = -1;
   figures_.is_leap = false;
 }
 

@@ -50,9 +50,11 @@ struct TrackerOptions {
   std::optional<WheelOptions> wheels;  // beneath the camera; none: the camera alone
   WheelsOnlyOptions wheels_only;
   bool worlds_enabled = true;
-  // So long after a loss a new world is begun beside those that were lost ...
+  // So long after the first sharp frame that was lost a new world is begun beside those that were lost. Blurred frames
+  // do not count: they do not tell that the camera is elsewhere.
   double new_world_seconds = 0.5;
-  // ... or after so long, where inertia may tell the pose meanwhile. In a frozen map poses are predicted for so long.
+  // Where inertia may tell the pose meanwhile it is begun so long after the first frame without. In a frozen map poses
+  // are predicted for so long.
   double predicted_seconds = 1;
   // The map is only localised in: no frame becomes a keyframe, and no points are chosen. Only a run that goes on with a
   // saved map can be so.
@@ -162,7 +164,7 @@ class Tracker {
   void linkFromLatestKeyframe();
   void beLostSince(std::int64_t time_ns);
   void beFound();
-  bool isLostBriefly(std::int64_t time_ns) const;
+  bool isPredictedStill(std::int64_t time_ns) const;
 
   Camera calibrated_;
   Camera camera_;  // with what was found of it
@@ -187,6 +189,7 @@ class Tracker {
   bool frame_is_lost_ = false;
   bool is_lost_ = false;                        // the last frame was, and not merely blurred
   std::int64_t lost_since_ns_ = -1;             // or blurred since; -1: neither
+  std::int64_t lost_sharp_since_ns_ = -1;       // without the blurred ones; -1: not lost
   bool last_was_found_again_ = false;           // by others, in a frame that may be long past
   int located_in_a_row_ = 0;                    // frames, in a map that stands
   Matrix6d map_covariance_ = Matrix6d::Zero();  // where the last pose was measured

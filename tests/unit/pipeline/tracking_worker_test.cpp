@@ -238,7 +238,9 @@ INSTANTIATE_TEST_SUITE_P(How, TrackingWorkerFound,
                          [](const auto& how) { return std::string(stateName(how.param)); });
 
 TEST_P(TrackingWorkerFound, TheAnswerGoesOnFromTheFrameThatWasAskedFor) {
-  Followed run(3);
+  Settings settings;
+  settings.tracking.new_world_seconds = 1;  // none meanwhile
+  Followed run(3, settings);
   run.process(4, 4 * walking_interval_ns, elsewhere());
   run.nextUpdate(run.messages.back().number);
   take(run.worker, run.update);

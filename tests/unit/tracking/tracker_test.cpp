@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "unit/tracking/plane_walk.h"
 
@@ -39,11 +40,12 @@ void adopt(Tracker& tracker, MapView view) { tracker.adopt(view); }
 
 // A tracker that knows the plane and has followed it up to frame `last`.
 struct Tracked {
-  Tracker tracker{walking_camera, EdgeOptions(), PointChoiceOptions(), TrackerOptions()};
+  Tracker tracker;
   MapView view;
   Outcome outcome;  // of frame `last`
 
-  explicit Tracked(int last) {
+  explicit Tracked(int last, const TrackerOptions& options = TrackerOptions())
+      : tracker{walking_camera, EdgeOptions(), PointChoiceOptions(), options} {
     outcome = trackFrame(tracker, 0);
     view = knownMap(outcome.for_mapping);
     adopt(tracker, view);
@@ -338,10 +340,16 @@ std::vector<FoundAgain> foundIn(const MapView& view, const Pose& pose, const Pos
   return found;
 }
 
+// So long after a loss that the last frame's points are not looked for any more, and no world is begun yet.
+TrackerOptions patient() {
+  TrackerOptions options;
+  options.new_world_seconds = 1;
+  return options;
+}
+
 TEST(Tracker, ResumedItGoesOnInTheGivenWorld) {
-  Tracked run(2);
+  Tracked run(2, patient());
   ASSERT_EQ(track(run.tracker, 3, 3 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
-  // So long after, the last frame's points are not looked for any more.
   const std::int64_t later_ns = 900'000'000;
   const Outcome lost = track(run.tracker, 90, later_ns, imageAt(8));
   ASSERT_EQ(lost.state, TrackingState::lost);
@@ -385,7 +393,7 @@ cv::Mat mostlyElsewhere(int i) {
 // The answer may come long after the frame that was looked for. Where few of the points that were found are seen again,
 // these may agree with a wrong pose, on which the map would grow.
 TEST(Tracker, ResumedItBelievesNoPoseThatFewOfThePointsFoundAgreeWith) {
-  Tracked run(2);
+  Tracked run(2, patient());
   ASSERT_EQ(track(run.tracker, 3, 3 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
   const std::int64_t later_ns = 900'000'000;
   ASSERT_EQ(track(run.tracker, 90, later_ns, imageAt(8)).state, TrackingState::lost);
@@ -407,16 +415,16 @@ MapView ofAnotherWorld(MapView view, int world) {
   return view;
 }
 
-TEST(Tracker, LostForASecondItBeginsAWorldBesideTheOldOne) {
+TEST(Tracker, LostForHalfASecondItBeginsAWorldBesideTheOldOne) {
   Tracked run(2);
   EXPECT_EQ(run.outcome.world, 0);
   const std::int64_t lost_ns = 3 * walking_interval_ns;
   const Outcome lost = track(run.tracker, 3, lost_ns, elsewhere());
   EXPECT_EQ(lost.state, TrackingState::lost);
   EXPECT_EQ(lost.world, -1);
-  EXPECT_EQ(track(run.tracker, 4, lost_ns + 990'000'000, elsewhere()).state, TrackingState::lost);
+  EXPECT_EQ(track(run.tracker, 4, lost_ns + 490'000'000, elsewhere()).state, TrackingState::lost);
   EXPECT_FALSE(run.tracker.startsBesideOthers());
-  const Outcome begun = track(run.tracker, 5, lost_ns + 1'010'000'000, elsewhere());
+  const Outcome begun = track(run.tracker, 5, lost_ns + 510'000'000, elsewhere());
   EXPECT_EQ(begun.state, TrackingState::initialising);
   EXPECT_EQ(begun.world, -1);
   ASSERT_TRUE(begun.tells_mapping);
@@ -431,11 +439,47 @@ TEST(Tracker, LostForASecondItBeginsAWorldBesideTheOldOne) {
   EXPECT_EQ(asked.world, 0);
   ASSERT_TRUE(asked.images);
   // A start that fails begins again with the same number.
-  const Outcome again = track(run.tracker, 6, lost_ns + 1'030'000'000, black());
-  const Outcome anew = track(run.tracker, 7, lost_ns + 1'050'000'000, imageAt(7));
+  const Outcome again = track(run.tracker, 6, lost_ns + 530'000'000, black());
+  const Outcome anew = track(run.tracker, 7, lost_ns + 550'000'000, imageAt(7));
   EXPECT_FALSE(again.tells_mapping);
   ASSERT_TRUE(anew.tells_mapping);
   EXPECT_EQ(anew.for_mapping.keyframe, begun.for_mapping.keyframe);
+}
+
+// As in a fast turn: the blurred frames show nothing, but what was there is still there after them.
+TEST(Tracker, BlurredFramesDoNotHastenANewWorld) {
+  Tracked run(9);
+  cv::Mat blurred;
+  cv::resize(imageAt(10), blurred, {}, 1.0 / 16, 1.0 / 16, cv::INTER_AREA);
+  cv::resize(blurred, blurred, imageAt(10).size(), 0, 0, cv::INTER_LINEAR);
+  const std::int64_t blurred_ns = 10 * walking_interval_ns;
+  ASSERT_EQ(track(run.tracker, 10, blurred_ns, blurred).state, TrackingState::predicted);
+  const std::int64_t sharp_ns = blurred_ns + 300'000'000;
+  EXPECT_EQ(track(run.tracker, 11, sharp_ns, elsewhere()).state, TrackingState::lost);
+  EXPECT_EQ(track(run.tracker, 12, blurred_ns + 510'000'000, elsewhere()).state, TrackingState::lost);
+  EXPECT_EQ(track(run.tracker, 13, sharp_ns + 490'000'000, elsewhere()).state, TrackingState::lost);
+  EXPECT_EQ(track(run.tracker, 14, sharp_ns + 510'000'000, elsewhere()).state, TrackingState::initialising);
+}
+
+// Poses are predicted meanwhile.
+TEST(Tracker, WithAnInertialUnitANewWorldIsBegunAfterASecond) {
+  TrackerOptions options;
+  options.inertia = InertialUnit();
+  Tracked run(2, options);
+  const std::int64_t lost_ns = 3 * walking_interval_ns;
+  EXPECT_EQ(track(run.tracker, 3, lost_ns, elsewhere()).state, TrackingState::lost);
+  EXPECT_EQ(track(run.tracker, 4, lost_ns + 990'000'000, elsewhere()).state, TrackingState::lost);
+  EXPECT_EQ(track(run.tracker, 5, lost_ns + 1'010'000'000, elsewhere()).state, TrackingState::initialising);
+}
+
+TEST(Tracker, InAFrozenMapPosesArePredictedForASecond) {
+  TrackerOptions options;
+  options.map_is_frozen = true;
+  Tracked run(2, options);
+  const std::int64_t lost_ns = 3 * walking_interval_ns;
+  EXPECT_EQ(track(run.tracker, 3, lost_ns, elsewhere()).state, TrackingState::predicted);
+  EXPECT_EQ(track(run.tracker, 4, lost_ns + 990'000'000, elsewhere()).state, TrackingState::predicted);
+  EXPECT_EQ(track(run.tracker, 5, lost_ns + 1'010'000'000, elsewhere()).state, TrackingState::lost);
 }
 
 TEST(Tracker, WithoutNewWorldsItStaysLost) {
