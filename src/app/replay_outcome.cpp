@@ -47,6 +47,10 @@ void tellCamera(const RunResult& result) {
     std::printf("found on the way: the focal length is not that of the calibration, but %.1f pixels\n",
                 result.camera.fx);
   }
+  if (result.found.principal_point != FoundCamera{}.principal_point) {
+    std::printf("found on the way: the principal point is not that of the calibration, but cx: %.1f, cy: %.1f pixels\n",
+                result.camera.cx, result.camera.cy);
+  }
   if (result.found.radial != FoundCamera{}.radial) {
     std::printf("found on the way: the distortion is not that of the calibration, but k1: %.4f, k2: %.4f\n",
                 result.camera.distortion[0], result.camera.distortion[1]);

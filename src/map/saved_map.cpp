@@ -41,6 +41,7 @@ std::string readWhole(const std::string& path) {
 // What the run that saved a map found beside this calibration; none where its camera was another one.
 std::optional<FoundCamera> foundBeside(const Camera& calibrated, const Camera& saved) {
   constexpr double most_focal_change = 0.3, most_radial_change = 2, tolerance = 1e-12;
+  constexpr double most_principal_point_change = 0.1;  // of the longer side
   FoundCamera found;
   if (calibrated.readout_s == 0 && saved.readout_s != 0) found.readout_s = saved.readout_s;
   found.focal_scale = inMillionths(saved.fx / calibrated.fx);
@@ -49,15 +50,23 @@ std::optional<FoundCamera> foundBeside(const Camera& calibrated, const Camera& s
     found.radial[k] = inMillionths(saved.distortion[k] - calibrated.distortion[k]);
     if (!(std::abs(found.radial[k]) <= most_radial_change)) return std::nullopt;
   }
+  found.principal_point = {inMillionths(saved.cx - calibrated.cx), inMillionths(saved.cy - calibrated.cy)};
+  const double farthest = most_principal_point_change * std::max(calibrated.width, calibrated.height);
+  for (const double change : found.principal_point) {
+    if (!(std::abs(change) <= farthest)) return std::nullopt;
+  }
   Camera made = withFound(calibrated, found);
   const auto same = [&](double a, double b) { return std::abs(a - b) <= tolerance * std::max(1.0, std::abs(b)); };
   if (!same(made.fx, saved.fx) || !same(made.fy, saved.fy)) return std::nullopt;
+  if (!same(made.cx, saved.cx) || !same(made.cy, saved.cy)) return std::nullopt;
   for (std::size_t k = 0; k < found.radial.size(); ++k) {
     if (!same(made.distortion[k], saved.distortion[k])) return std::nullopt;
     made.distortion[k] = saved.distortion[k];
   }
   made.fx = saved.fx;
   made.fy = saved.fy;
+  made.cx = saved.cx;
+  made.cy = saved.cy;
   return made == saved ? std::optional(found) : std::nullopt;
 }
 

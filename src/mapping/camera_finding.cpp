@@ -9,6 +9,7 @@
 
 #include "map/worlds.h"
 #include "mapping/lens_estimate.h"
+#include "mapping/principal_point_estimate.h"
 #include "mapping/rays_anew.h"
 
 namespace edgeslam {
@@ -46,6 +47,19 @@ constexpr double most_change_of_calibrated = 0.25, most_change_of_presumed = 0.7
 constexpr double farthest_steps = 5;   // of trials of a lens that is presumed
 constexpr double far_off_share = 0.2;  // of the cost: a lens that explains so much is far off; only whereto is known
 constexpr double hardly_any = 0.25;    // of that gain: with others it does not come to more
+
+// Of the principal point [px].
+struct LookingForPrincipalPoint {
+  double least_sigma = 0.5;             // none is known better
+  double well_known = 2;                // standard deviation with which a look counts, ...
+  double least_sigmas = 3;              // ... if the change is so many of them ...
+  double least_share = 0.025;           // ... and explains so much of the cost
+  int agreeing_looks = 3;               // if so many looks in a row say so, within as many standard deviations, ...
+  double beyond_doubt = 0.1;            // ... or one that explains so much of the cost, it is not as presumed
+  double little = 1, too_little = 0.3;  // as above
+  double most_change = 0.05;            // of the longer side, over the calibration's
+};
+constexpr LookingForPrincipalPoint looking_for_principal_point;
 
 std::vector<KeyframeId> latestOf(std::vector<KeyframeId> keyframes, int most) {
   if (static_cast<int>(keyframes.size()) > most) keyframes.erase(keyframes.begin(), keyframes.end() - most);
@@ -171,6 +185,30 @@ ToldOfLens toldOfLens(const LensEquations& equations, double cost) {
   return told;
 }
 
+double enoughGainOfPrincipalPoint(double cost) {
+  return std::max(enoughGain(cost), looking_for_principal_point.least_share * cost);
+}
+
+// The same of the principal point, which has a gain that is `enough_gain`, or even `explains_it`.
+bool isToChange(const PrincipalPointEstimate& estimate, double enough_gain, bool explains_it, int keyframes, int enough,
+                PrincipalPointLooks& looks) {
+  const LookingForPrincipalPoint& looking = looking_for_principal_point;
+  const double length = estimate.change.norm();
+  if (looks.was_found) {
+    looks.steady = length < looking.little ? looks.steady + keyframes : 0;
+    looks.is_settled = looks.steady >= enough;
+    return length > looking.too_little;
+  }
+  const double sigma = std::hypot(times_less_known * estimate.sigma, looking.least_sigma);
+  const double far = looking.least_sigmas * sigma;
+  const bool says_so = sigma < looking.well_known && length > far && estimate.gain > enough_gain;
+  const bool agrees = looks.agreeing > 0 && (estimate.change - looks.last).norm() < far;
+  looks.agreeing = !says_so ? 0 : agrees ? looks.agreeing + 1 : 1;
+  looks.last = estimate.change;
+  looks.was_found = (says_so && explains_it) || looks.agreeing >= looking.agreeing_looks;
+  return looks.was_found;
+}
+
 }  // namespace
 
 std::optional<CameraEstimate> estimateReadout(const LookedAt& at, double longest_s) {
@@ -214,15 +252,37 @@ void CameraFinding::lookAtLens(const LookedAt& at, int keyframes, FoundCamera& f
                    options_.lens_is_presumed ? most_change_of_presumed : most_change_of_calibrated);
 }
 
+// Where the lens is as the trials say, these may say more of where its axis is.
+void CameraFinding::lookAtPrincipalPoint(const LookedAt& at, int keyframes, FoundCamera& found) {
+  const double enough = enoughGainOfPrincipalPoint(at.cost);
+  const std::optional<PrincipalPointEstimate> estimate =
+      estimatePrincipalPoint(at, principal_point_.was_found ? 0 : hardly_any * enough);
+  if (!estimate) {
+    principal_point_.agreeing = 0;
+    return;
+  }
+  const bool explains_it = estimate->gain > looking_for_principal_point.beyond_doubt * at.cost;
+  if (!isToChange(*estimate, enough, explains_it, keyframes, options_.most_keyframes, principal_point_)) return;
+  const Eigen::Vector2d change = worthwhile(at, *estimate);
+  const double farthest = looking_for_principal_point.most_change * std::max(at.camera.width, at.camera.height);
+  for (std::size_t k = 0; k < found.principal_point.size(); ++k) {
+    const double moved = found.principal_point[k] + change(static_cast<Eigen::Index>(k));
+    found.principal_point[k] = inMillionths(std::clamp(moved, -farthest, farthest));
+  }
+}
+
 bool CameraFinding::isSettled() const {
   const auto stays = [](const CameraLooks& looks) { return looks.is_settled || looks.rests; };
-  return !options_.is_enabled || (stays(readout_) && stays(focal_length_) && stays(distortion_));
+  const bool principal_point_stays = !principal_point_.was_found || principal_point_.is_settled;
+  return !options_.is_enabled ||
+         (stays(readout_) && stays(focal_length_) && stays(distortion_) && principal_point_stays);
 }
 
 bool CameraFinding::isDue(const CameraLooks& looks, int keyframes) const {
   if (looks.is_settled) return false;
   if (looks.rests) return keyframes >= options_.interval_resting;
-  const bool was_found = readout_.was_found || focal_length_.was_found || distortion_.was_found;
+  const bool was_found =
+      readout_.was_found || focal_length_.was_found || distortion_.was_found || principal_point_.was_found;
   return keyframes >= (was_found ? options_.interval_found : options_.interval);
 }
 
@@ -239,7 +299,9 @@ bool CameraFinding::look(const Camera& calibrated, const GlobalAdjustmentOptions
   if (calibrated.readout_s != 0) readout_.is_settled = true;
   const bool is_readout_due = isDue(readout_, ++since_readout_);
   ++since_lens_;
-  const bool is_lens_due = isDue(focal_length_, since_lens_) || isDue(distortion_, since_lens_);
+  const bool is_principal_point_unsettled = principal_point_.was_found && !principal_point_.is_settled;
+  const bool is_lens_due = isDue(focal_length_, since_lens_) || isDue(distortion_, since_lens_) ||
+                           (is_principal_point_unsettled && since_lens_ >= options_.interval_found);
   if (!options_.is_enabled || (!is_readout_due && !is_lens_due)) return false;
   const std::vector<KeyframeId> all = keyframesOf(map, map.keyframes.back().world);
   if (static_cast<int>(all.size()) < options_.fewest_keyframes) return false;
@@ -253,12 +315,17 @@ bool CameraFinding::look(const Camera& calibrated, const GlobalAdjustmentOptions
   }
   if (is_lens_due) {
     const int keyframes = std::exchange(since_lens_, 0);
-    const bool is_found = focal_length_.was_found || distortion_.was_found;
+    const bool is_found = focal_length_.was_found || distortion_.was_found || principal_point_.was_found;
     const std::vector<KeyframeId> looked_at = is_found ? latestOf(all, options_.most_keyframes_found) : latest;
     const std::optional<LookedAt> at = lookAt(camera, global, local, looked_at, seenBy(looked_at, map));
+    const FoundCamera before = found;
     if (at) lookAtLens(*at, keyframes, found);
+    const bool is_lens_as_it_was = found == before;
+    if (at && is_lens_as_it_was && !principal_point_.is_settled) lookAtPrincipalPoint(*at, keyframes, found);
   }
-  if (++looks_ >= options_.most_looks) readout_.is_settled = focal_length_.is_settled = distortion_.is_settled = true;
+  if (++looks_ >= options_.most_looks) {
+    readout_.is_settled = focal_length_.is_settled = distortion_.is_settled = principal_point_.is_settled = true;
+  }
   if (found == map.found) return false;
   map.found = found;
   std::vector<KeyframeId> of_map;

@@ -1,5 +1,5 @@
 // What the map says of the camera that its calibration does not, or says wrongly: how long a rolling shutter reads its
-// rows, how long the focal length is, and how the lens distorts. With another one than the camera's the rays of the
+// rows, how long the focal length is, how the lens distorts, and where its axis is. With another camera the rays of the
 // keyframes do not meet as well, so that their adjustment costs more.
 //
 // How the camera moved while a keyframe was read is told by the poses of frames, which err as long as the readout is
@@ -7,6 +7,7 @@
 // nearer: it is looked for again every few keyframes, until it stays.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
@@ -45,6 +46,15 @@ struct CameraLooks {
   bool rests = false;       // it is as presumed, as far as the motion tells: another motion may tell more
 };
 
+// The same of the principal point.
+struct PrincipalPointLooks {
+  int agreeing = 0;
+  Eigen::Vector2d last = Eigen::Vector2d::Zero();  // [px]
+  int steady = 0;
+  bool was_found = false;
+  bool is_settled = false;
+};
+
 class CameraFinding {
  public:
   explicit CameraFinding(const CameraFindingOptions& options) : options_(options) {
@@ -63,9 +73,11 @@ class CameraFinding {
   bool isDue(const CameraLooks& looks, int keyframes) const;
   void lookAtReadout(const LookedAt& at, double longest_s, int keyframes, FoundCamera& found);
   void lookAtLens(const LookedAt& at, int keyframes, FoundCamera& found);
+  void lookAtPrincipalPoint(const LookedAt& at, int keyframes, FoundCamera& found);
 
   CameraFindingOptions options_;
   CameraLooks readout_, focal_length_, distortion_;
+  PrincipalPointLooks principal_point_;
   int since_readout_ = 0, since_lens_ = 0;  // was looked at [keyframes]
   int looks_ = 0;
 };

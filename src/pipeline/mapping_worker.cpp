@@ -105,6 +105,13 @@ void MappingWorker::tellOfCamera() {
                                     "camera",
                                     mapper_.camera().fx));
   }
+  if (found.principal_point != told.principal_point) {
+    report(last_frame_)
+        .events.push_back(
+            formatted("the principal point is not that of the calibration, but cx: %.1f, cy: %.1f pixels: "
+                      "calibrate the camera",
+                      mapper_.camera().cx, mapper_.camera().cy));
+  }
   if (found.radial != told.radial) {
     report(last_frame_)
         .events.push_back(formatted("the distortion is not that of the calibration, but k1: %.4f, k2: %.4f: calibrate "

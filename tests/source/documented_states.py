@@ -23,6 +23,7 @@ SOURCES = {
         "the camera has a rolling shutter and reads its rows over %.1f ms: with "
         "camera.readout: %.4f in the configuration this is known from the start",
         "the focal length is not that of the calibration, but %.1f pixels: calibrate the camera",
+        "the principal point is not that of the calibration, but cx: %.1f, cy: %.1f pixels: calibrate the camera",
         "the distortion is not that of the calibration, but k1: %.4f, k2: %.4f: calibrate the camera",
         "the inertial unit tells metres and upright: a map unit is %.3f m +- %.1f %%"],
     "src/mapping/initialisation.cpp": [" from frame ", " to frame ", ", "],  # what the start was

@@ -22,19 +22,28 @@ void expectPosesGoOn(const ReplayedRun& result, const std::string& sequence, dou
   EXPECT_LT(largestError(readTrajectory(result.folder + "/trajectory.txt"), truth), largest_error_m);
 }
 
-// A sequence whose calibration has focal lengths that are so many times as long as they are.
-std::string withWrongFocalLengths(double times, const TemporaryFolder& folder, const std::string& name) {
-  const std::string sequence = EditedSequence().add(place("parlour"), 0, 239).write(folder, name);
+// The first so many frames of the parlour with another calibration: `change` gives the value of each of fx, fy, cx and
+// cy from what it was.
+template <typename Change>
+std::string withWrongCalibration(int frames, const Change& change, const TemporaryFolder& folder,
+                                 const std::string& name) {
+  const std::string sequence = EditedSequence().add(place("parlour"), 0, frames - 1).write(folder, name);
   std::string camera = fileContent(sequence + "/camera.yaml"), wrong;
-  const std::regex focal("(f[xy]: *)([0-9.]+)");
+  const std::regex value("([fc][xy])(: *)([0-9.]+)");
   std::smatch match;
   int found = 0;
-  for (; std::regex_search(camera, match, focal); camera = match.suffix(), ++found) {
-    wrong += match.prefix().str() + match[1].str() + std::to_string(times * std::stod(match[2].str()));
+  for (; std::regex_search(camera, match, value); camera = match.suffix(), ++found) {
+    wrong += match.prefix().str() + match[1].str() + match[2].str();
+    wrong += std::to_string(change(match[1].str(), std::stod(match[3].str())));
   }
-  EXPECT_EQ(found, 2) << "fx and fy";
+  EXPECT_EQ(found, 4) << "fx, fy, cx and cy";
   folder.write(name + "/camera.yaml", wrong + camera);
   return sequence;
+}
+
+std::string withWrongFocalLengths(double times, const TemporaryFolder& folder, const std::string& name) {
+  const auto change = [&](const std::string& key, double value) { return key[0] == 'f' ? times * value : value; };
+  return withWrongCalibration(240, change, folder, name);
 }
 
 TEST(RoughCamera, ACalibrationThatIsTwoPercentOff) {
@@ -111,6 +120,30 @@ TEST(RoughCamera, AFocalLengthThatIsFarOffIsFoundOnTheWay) {
   EXPECT_LT(meanError(finds, sequence), meanError(as_it_is, sequence));
   EXPECT_NE(finds.outcome.output.find("the focal length is not that of the calibration"), std::string::npos)
       << finds.outcome.output;
+}
+
+TEST(RoughCamera, APrincipalPointThatIsOffIsFoundOnTheWay) {
+  const TemporaryFolder folder;
+  double true_x = 0, true_y = 0;
+  const auto change = [&](const std::string& key, double value) {
+    if (key == "cx") return (true_x = value) + 6;
+    if (key == "cy") return (true_y = value) - 4;
+    return value;
+  };
+  const std::string sequence = withWrongCalibration(300, change, folder, "off");
+  folder.write("as_it_is.yaml", "camera_finding: {enabled: false}\n");
+  const ReplayedRun finds = replayed(sequence, folder.path("finds"));
+  const ReplayedRun as_it_is = replayed(sequence, folder.path("as_it_is"), {"--config", folder.path("as_it_is.yaml")});
+  ASSERT_EQ(finds.outcome.exit_code, 0) << finds.outcome.messages;
+  ASSERT_EQ(as_it_is.outcome.exit_code, 0) << as_it_is.outcome.messages;
+  EXPECT_LT(meanError(finds, sequence), 0.5 * meanError(as_it_is, sequence));
+  const std::regex line(
+      "found on the way: the principal point is not that of the calibration, but cx: ([0-9.]+), "
+      "cy: ([0-9.]+) pixels");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(finds.outcome.output, match, line)) << finds.outcome.output;
+  EXPECT_NEAR(std::stod(match[1]), true_x, 2);
+  EXPECT_NEAR(std::stod(match[2]), true_y, 2);
 }
 
 // Simulated cameras have 265 px, and distort.

@@ -87,6 +87,9 @@ TEST(SavedMapFile, WhatWasFoundOfTheCameraComesBack) {
     saveMap(folder.path("found.map"), saved.camera, saved.map);
     EXPECT_EQ(loadMap(folder.path("found.map"), saved.camera).found, saved.map.found) << radial[0];
   }
+  saved.map.found = {std::nullopt, 1, {}, {inMillionths(3.37), inMillionths(-2.11)}};
+  saveMap(folder.path("found.map"), saved.camera, saved.map);
+  EXPECT_EQ(loadMap(folder.path("found.map"), saved.camera).found, saved.map.found);
   Camera other = saved.camera;
   other.fx *= 1.02;
   expectInputError([&] { loadMap(folder.path("found.map"), other); }, folder.path("found.map"), "calibration");

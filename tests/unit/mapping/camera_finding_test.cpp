@@ -87,6 +87,21 @@ TEST(CameraFinding, AFocalLengthThatIsOffIsFoundAndOneThatIsNearlyRightIsLeftAlo
   }
 }
 
+TEST(CameraFinding, APrincipalPointThatIsOffIsFoundAndOneThatIsNearlyRightIsLeftAlone) {
+  for (const Eigen::Vector2d& off : {Eigen::Vector2d(9, -6), Eigen::Vector2d(0.2, 0.1)}) {
+    const Camera wrong = test::withPrincipalPointMoved(test::Walk::camera(), off);
+    test::Walk walk = test::mappedWith(wrong, 12, test::roll_that_tells);
+    CameraFinding finding({});
+    for (int keyframe = 0; keyframe < 400 && !finding.isSettled(); ++keyframe) finding.look(wrong, {}, {}, walk.map);
+    const bool is_far_off = off.norm() > 1;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double expected = is_far_off ? -off(static_cast<Eigen::Index>(k)) : 0;
+      EXPECT_NEAR(walk.map.found.principal_point[k], expected, is_far_off ? 1.5 : 1e-12) << k;
+    }
+    EXPECT_TRUE(finding.isSettled());
+  }
+}
+
 TEST(CameraFinding, APresumedFocalLengthMayBeFarOff) {
   for (const double times : {0.8, 1.25}) {
     const Camera wrong = test::withFocalLengths(test::Walk::camera(), times);

@@ -17,6 +17,7 @@ struct Walk {
   Random random;
   std::vector<Eigen::Vector3d> landmarks;
   static constexpr int steps_a_lap = 40;
+  double largest_roll = 0;  // of the camera, three times to both sides a lap [rad]
   std::shared_ptr<FrameImages> images = std::make_shared<FrameImages>();
   Map map;
   Candidates candidates;
@@ -33,7 +34,9 @@ struct Walk {
   void step() { stepTo(2 * M_PI * static_cast<double>(poses.size()) / steps_a_lap); }
 
   void stepTo(double angle) {
-    const Pose on_circle{rotationExp({0, angle, 0}), {2 * std::sin(angle), 0, 2 * std::cos(angle)}};
+    const double roll = largest_roll * std::sin(3 * angle);
+    const Pose on_circle{rotationExp({0, angle, 0}) * rotationExp({0, 0, roll}),
+                         {2 * std::sin(angle), 0, 2 * std::cos(angle)}};
     Keyframe keyframe;
     keyframe.id = static_cast<KeyframeId>(poses.size());
     keyframe.world_T_camera = perturbed(random, on_circle, 0.05, 0.02);

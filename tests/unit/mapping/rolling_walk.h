@@ -14,8 +14,10 @@ inline std::vector<KeyframeId> allKeyframes(const Map& map) {
 
 // `readout_s`: the camera's. `motion`: largest speed [map units/s] and turn rate [rad/s] while rows are read. `noise`:
 // of the measurements [px].
-inline Walk rollingWalk(std::uint64_t seed, int keyframes, double readout_s, double motion, double noise) {
+inline Walk rollingWalk(std::uint64_t seed, int keyframes, double readout_s, double motion, double noise,
+                        double largest_roll = 0) {
   Walk walk(seed);
+  walk.largest_roll = largest_roll;
   for (int k = 0; k < keyframes; ++k) walk.step();
   Camera rolling = Walk::camera();
   rolling.readout_s = readout_s;

@@ -22,9 +22,17 @@ inline Camera withDistortion(Camera camera, double more) {
   return camera;
 }
 
+constexpr double roll_that_tells = 1.2;  // the principal point [rad]
+
+inline Camera withPrincipalPointMoved(Camera camera, const Eigen::Vector2d& by_px) {
+  camera.cx += by_px.x();
+  camera.cy += by_px.y();
+  return camera;
+}
+
 // The map of a global shutter, with the rays that a wrong calibration gives it.
-inline Walk mappedWith(const Camera& wrong, std::uint64_t seed) {
-  Walk walk = rollingWalk(seed, 20, 0, 0.5, 0.2);
+inline Walk mappedWith(const Camera& wrong, std::uint64_t seed, double largest_roll = 0) {
+  Walk walk = rollingWalk(seed, 20, 0, 0.5, 0.2, largest_roll);
   takeRaysAnew(wrong, allKeyframes(walk.map), walk.map);
   return walk;
 }
