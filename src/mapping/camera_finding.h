@@ -7,11 +7,10 @@
 // nearer: it is looked for again every few keyframes, until it stays.
 #pragma once
 
-#include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "geometry/found_camera.h"
+#include "mapping/camera_looks.h"
 #include "mapping/camera_trial.h"
 
 namespace edgeslam {
@@ -28,31 +27,6 @@ struct CameraFindingOptions {
   int most_keyframes_found = 48;  // ... and once another lens was found: one motion tells of it what another does not
   int most_looks = 50;
   int whole_map = 60;  // keyframes of a world that are all adjusted by what was found; of more the latest are
-};
-
-// What some keyframes say of their camera: with what their adjustment costs least.
-struct CameraEstimate {
-  double value = 0;  // readout [s], logarithm of how many times as long the focal lengths are, or distortion
-  double sigma = 0;  // standard deviation, if measurements err as they say
-};
-
-// Of one thing that is looked for: what the looks at it said, one after the other.
-struct CameraLooks {
-  int agreeing = 0;  // in a row, that say that it is not as presumed ...
-  double last = 0;   // ... and what the last of these said
-  int steady = 0;    // keyframes over which they changed nothing
-  bool was_found = false;
-  bool is_settled = false;  // found, and it stayed; it is not looked for any more
-  bool rests = false;       // it is as presumed, as far as the motion tells: another motion may tell more
-};
-
-// The same of the principal point.
-struct PrincipalPointLooks {
-  int agreeing = 0;
-  Eigen::Vector2d last = Eigen::Vector2d::Zero();  // [px]
-  int steady = 0;
-  bool was_found = false;
-  bool is_settled = false;
 };
 
 class CameraFinding {
@@ -81,8 +55,5 @@ class CameraFinding {
   int since_readout_ = 0, since_lens_ = 0;  // was looked at [keyframes]
   int looks_ = 0;
 };
-
-// Readouts up to `longest_s` of either sign are tried. Nothing where there is no least cost.
-std::optional<CameraEstimate> estimateReadout(const LookedAt& at, double longest_s);
 
 }  // namespace edgeslam

@@ -17,6 +17,12 @@ struct LookedAt {
   double cost = 0;
 };
 
+// With what of a camera the adjustment costs least.
+struct CameraEstimate {
+  double value = 0;  // readout [s], logarithm of how many times as long the focal lengths are, or distortion
+  double sigma = 0;  // standard deviation, if measurements err as they say
+};
+
 // Nothing where the adjustment failed.
 std::optional<LookedAt> lookAt(const Camera& camera, const GlobalAdjustmentOptions& global,
                                const LocalAdjustmentOptions& local, const std::vector<KeyframeId>& keyframes,

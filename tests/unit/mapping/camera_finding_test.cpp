@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "mapping/readout_estimate.h"
 #include "unit/mapping/wrong_lens.h"
 
 namespace edgeslam {
@@ -18,20 +19,6 @@ FoundCamera foundIn(test::Walk& walk, CameraFinding& finding) {
     finding.look(test::Walk::camera(), {}, {}, walk.map);
   }
   return walk.map.found;
-}
-
-TEST(CameraFinding, TheReadoutIsThatWithWhichTheMapFits) {
-  for (const double readout_s : {-0.025, 0.0, 0.012, 0.03}) {
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      const auto estimate = estimateReadout(
-          test::lookedAt(test::Walk::camera(), test::rollingWalk(seed, 20, readout_s, largest_motion, noise_px)),
-          longest_s);
-      ASSERT_TRUE(estimate);
-      EXPECT_NEAR(estimate->value, readout_s, 0.0015) << seed;
-      EXPECT_GT(estimate->sigma, 0);
-      EXPECT_LT(estimate->sigma, 0.001);
-    }
-  }
 }
 
 TEST(CameraFinding, ARollingShutterIsFoundAndTheMapAdjustedToIt) {
