@@ -61,4 +61,14 @@ double costWith(const LookedAt& at, const Camera& camera) {
   return is_adjusted ? left : std::numeric_limits<double>::infinity();
 }
 
+double worthwhileShare(const LookedAt& at, const std::function<Camera(double)>& with,
+                       const std::function<double(double)>& expected_gain) {
+  constexpr double least_share = 0.125, least_kept = 0.5;
+  for (double share = 1; share >= least_share; share *= 0.5) {
+    const double expected = expected_gain(share);
+    if (expected > 0 && at.cost - costWith(at, with(share)) > least_kept * expected) return share;
+  }
+  return 0;
+}
+
 }  // namespace edgeslam

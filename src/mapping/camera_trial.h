@@ -1,6 +1,7 @@
 // What it costs to adjust some keyframes of a map with another camera than the one that their rays are of.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -34,5 +35,10 @@ Map seenBy(const std::vector<KeyframeId>& keyframes, Map map);
 // What the adjustment costs with a camera: infinity where it fails, and where the camera folds the image, unless the
 // one that there was does, too.
 double costWith(const LookedAt& at, const Camera& camera);
+
+// What share of a change to another camera takes off at least half of the cost that it is expected to: 1, or 1/2, 1/4,
+// 1/8, or nothing of it.
+double worthwhileShare(const LookedAt& at, const std::function<Camera(double share)>& with,
+                       const std::function<double(double share)>& expected_gain);
 
 }  // namespace edgeslam

@@ -102,16 +102,14 @@ FoundCamera withLens(const Camera& camera, const FoundCamera& found, const Eigen
 }
 
 Eigen::Vector3d worthwhile(const LookedAt& at, const LensEquations& equations, Eigen::Vector3d change) {
-  constexpr int most_halvings = 3;
-  constexpr double least_kept = 0.5;  // of the gain that is expected
   const double largest = change.cwiseAbs().maxCoeff();
   if (largest > most_change_at_once) change *= most_change_at_once / largest;
-  for (int halved = 0; halved <= most_halvings; ++halved, change *= 0.5) {
-    const double expected = -equations.gradient.dot(change) - 0.5 * change.dot(equations.information * change);
-    const double gain = at.cost - costWith(at, withFound(at.camera, withLens(at.camera, {}, change)));
-    if (expected > 0 && gain > least_kept * expected) return change;
-  }
-  return Eigen::Vector3d::Zero();
+  const auto with = [&](double share) { return withFound(at.camera, withLens(at.camera, {}, share * change)); };
+  const auto expected_gain = [&](double share) {
+    const Eigen::Vector3d part = share * change;
+    return -equations.gradient.dot(part) - 0.5 * part.dot(equations.information * part);
+  };
+  return worthwhileShare(at, with, expected_gain) * change;
 }
 
 }  // namespace edgeslam

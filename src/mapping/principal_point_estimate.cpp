@@ -1,6 +1,7 @@
 #include "mapping/principal_point_estimate.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace edgeslam {
@@ -9,11 +10,10 @@ namespace {
 constexpr int iterations_of_trial = 3;  // about a map that is adjusted; more find the same
 constexpr double step_px = 3;
 
-double costAt(const LookedAt& at, const Eigen::Vector2d& change_px) {
-  Camera camera = at.camera;
-  camera.cx += change_px.x();
-  camera.cy += change_px.y();
-  return costWith(at, camera);
+Camera withMoved(Camera camera, const Eigen::Vector2d& by_px) {
+  camera.cx += by_px.x();
+  camera.cy += by_px.y();
+  return camera;
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ double costAt(const LookedAt& at, const Eigen::Vector2d& change_px) {
 std::optional<PrincipalPointEstimate> estimatePrincipalPoint(const LookedAt& at, double least_gain) {
   LookedAt trials = at;
   trials.adjustment.bundle.iterations = iterations_of_trial;
-  const auto cost = [&](int x, int y) { return costAt(trials, {x * step_px, y * step_px}); };
+  const auto cost = [&](int x, int y) { return costWith(trials, withMoved(at.camera, {x * step_px, y * step_px})); };
   const double right = cost(1, 0), left = cost(-1, 0), below = cost(0, 1), above = cost(0, -1);
   const Eigen::Vector2d gradient = Eigen::Vector2d(right - left, below - above) / (2 * step_px);
   const Eigen::Vector2d curvature =
@@ -45,15 +45,14 @@ std::optional<PrincipalPointEstimate> estimatePrincipalPoint(const LookedAt& at,
 }
 
 Eigen::Vector2d worthwhile(const LookedAt& at, const PrincipalPointEstimate& estimate) {
-  constexpr int most_halvings = 3;
-  constexpr double least_kept = 0.5;          // of the gain that is expected
   constexpr double most_change_at_once = 10;  // [px]
-  double times = std::min(1.0, most_change_at_once / estimate.change.norm());
-  for (int halved = 0; halved <= most_halvings; ++halved, times *= 0.5) {
-    const double expected = (2 * times - times * times) * estimate.gain;
-    if (at.cost - costAt(at, times * estimate.change) > least_kept * expected) return times * estimate.change;
-  }
-  return Eigen::Vector2d::Zero();
+  const double most = std::min(1.0, most_change_at_once / estimate.change.norm());
+  const auto with = [&](double share) { return withMoved(at.camera, share * most * estimate.change); };
+  const auto expected_gain = [&](double share) {
+    const double part = share * most;
+    return (2 * part - part * part) * estimate.gain;
+  };
+  return worthwhileShare(at, with, expected_gain) * most * estimate.change;
 }
 
 }  // namespace edgeslam

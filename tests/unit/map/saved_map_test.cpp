@@ -90,6 +90,9 @@ TEST(SavedMapFile, WhatWasFoundOfTheCameraComesBack) {
   saved.map.found = {std::nullopt, 1, {}, {inMillionths(3.37), inMillionths(-2.11)}};
   saveMap(folder.path("found.map"), saved.camera, saved.map);
   EXPECT_EQ(loadMap(folder.path("found.map"), saved.camera).found, saved.map.found);
+  Camera far_off = saved.camera;
+  far_off.cx += 0.2 * far_off.width;
+  expectInputError([&] { loadMap(folder.path("found.map"), far_off); }, folder.path("found.map"), "calibration");
   Camera other = saved.camera;
   other.fx *= 1.02;
   expectInputError([&] { loadMap(folder.path("found.map"), other); }, folder.path("found.map"), "calibration");

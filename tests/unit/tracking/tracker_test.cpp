@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "unit/tracking/plane_walk.h"
 
@@ -461,25 +462,29 @@ TEST(Tracker, BlurredFramesDoNotHastenANewWorld) {
   EXPECT_EQ(track(run.tracker, 14, sharp_ns + 510'000'000, elsewhere()).state, TrackingState::initialising);
 }
 
-// Poses are predicted meanwhile.
+// Of a frame that shows another place, and of those nearly and just over a second later.
+std::vector<TrackingState> statesOfALoss(const TrackerOptions& options) {
+  Tracked run(2, options);
+  const std::int64_t lost_ns = 3 * walking_interval_ns;
+  std::vector<TrackingState> states;
+  for (const std::int64_t since_ns : {0, 990'000'000, 1'010'000'000}) {
+    states.push_back(track(run.tracker, 3 + static_cast<int>(states.size()), lost_ns + since_ns, elsewhere()).state);
+  }
+  return states;
+}
+
 TEST(Tracker, WithAnInertialUnitANewWorldIsBegunAfterASecond) {
   TrackerOptions options;
   options.inertia = InertialUnit();
-  Tracked run(2, options);
-  const std::int64_t lost_ns = 3 * walking_interval_ns;
-  EXPECT_EQ(track(run.tracker, 3, lost_ns, elsewhere()).state, TrackingState::lost);
-  EXPECT_EQ(track(run.tracker, 4, lost_ns + 990'000'000, elsewhere()).state, TrackingState::lost);
-  EXPECT_EQ(track(run.tracker, 5, lost_ns + 1'010'000'000, elsewhere()).state, TrackingState::initialising);
+  using S = TrackingState;
+  EXPECT_EQ(statesOfALoss(options), (std::vector<S>{S::lost, S::lost, S::initialising}));
 }
 
 TEST(Tracker, InAFrozenMapPosesArePredictedForASecond) {
   TrackerOptions options;
   options.map_is_frozen = true;
-  Tracked run(2, options);
-  const std::int64_t lost_ns = 3 * walking_interval_ns;
-  EXPECT_EQ(track(run.tracker, 3, lost_ns, elsewhere()).state, TrackingState::predicted);
-  EXPECT_EQ(track(run.tracker, 4, lost_ns + 990'000'000, elsewhere()).state, TrackingState::predicted);
-  EXPECT_EQ(track(run.tracker, 5, lost_ns + 1'010'000'000, elsewhere()).state, TrackingState::lost);
+  using S = TrackingState;
+  EXPECT_EQ(statesOfALoss(options), (std::vector<S>{S::predicted, S::predicted, S::lost}));
 }
 
 TEST(Tracker, WithoutNewWorldsItStaysLost) {
