@@ -15,12 +15,13 @@
 namespace edgeslam {
 namespace {
 
-void listCamera(const Camera& camera) {
+void listCamera(const Camera& camera, const std::string& doubt) {
   std::cout << "  camera: " << camera.width << " x " << camera.height << " px, "
             << (camera.model == CameraModel::kannala_brandt ? "Kannala-Brandt fisheye" : "pinhole, radial-tangential")
             << ", focal lengths " << camera.fx << " " << camera.fy << " px, centre " << camera.cx << " " << camera.cy
             << " px\n";
   if (camera.readout_s != 0) std::cout << "  rows are read over " << 1e3 * camera.readout_s << " ms\n";
+  if (!doubt.empty()) std::cout << "  " << doubt << "\n";
 }
 
 void listDifferences(const Configuration& configuration) {
@@ -44,7 +45,7 @@ void listDifferences(const Configuration& configuration) {
                            100 * maskedShare(*configuration.mask));
   }
   if (configuration.camera) {
-    listCamera(*configuration.camera);
+    listCamera(*configuration.camera, configuration.camera_doubt);
     if (configuration.settings.mapping.camera_finding.lens_is_presumed)
       std::cout << "  its lens is presumed, and looked for on the way\n";
   } else {
@@ -58,8 +59,9 @@ void listDifferences(const Configuration& configuration) {
 int checkConfiguration(const std::string& path) {
   if (isCalibrationFile(path)) {
     const Camera camera = readCalibration(path);
-    std::cout << path << ": a good calibration\n";
-    listCamera(camera);
+    const std::string doubt = doubtfulDistortion(camera);
+    std::cout << path << (doubt.empty() ? ": a good calibration\n" : ": a calibration that can be read\n");
+    listCamera(camera, doubt);
     return exit_done;
   }
   std::vector<std::string> problems;

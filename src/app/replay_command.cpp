@@ -228,6 +228,9 @@ int runReplay(const ReplayArguments& arguments) {
   if (const std::string presumed = presumedLens(configuration); !presumed.empty()) {
     std::cerr << "edgeslam: " << presumed << "\n";
   }
+  if (const std::string doubt = calibrationDoubt(*source, configuration); !doubt.empty()) {
+    std::cerr << "edgeslam: " << doubt << "\n";
+  }
   const MeasuredBeside measured =
       measuredBeside(*source, {arguments.imu, arguments.wheels, arguments.realtime}, configuration);
   const Camera camera = withReadoutOfUnit(calibrated, configuration);

@@ -18,9 +18,11 @@ struct RunArguments {
   std::string configuration, source, record, map_in, map_out;
 };
 
-Camera cameraOf(const RunArguments& arguments, const Configuration& configuration) {
+Camera cameraOf(const RunArguments& arguments, const Configuration& configuration, EventLog& log) {
   std::optional<Camera> beside;
   if (!arguments.source.empty()) beside = openFrameSource(arguments.source)->camera();
+  const std::string doubt = configuration.camera || !beside ? configuration.camera_doubt : doubtfulDistortion(*beside);
+  if (!doubt.empty()) log.tell(doubt);
   if (configuration.camera) return *configuration.camera;
   if (beside) return asConfigured(*beside, configuration);
   throw InputError((arguments.configuration.empty() ? "" : arguments.configuration + ": ") +
@@ -56,7 +58,7 @@ DaemonSetup setupOf(const RunArguments& arguments, EventLog& log) {
   DaemonSetup setup;
   if (!arguments.configuration.empty()) setup.configuration = readConfiguration(arguments.configuration);
   const ServiceOptions& service = setup.configuration.service;
-  setup.camera = cameraOf(arguments, setup.configuration);
+  setup.camera = cameraOf(arguments, setup.configuration, log);
   setup.configuration.settings = settingsWithSensors(setup.configuration);
   setup.camera = withReadoutOfUnit(setup.camera, setup.configuration);
   setup.capture = setup.configuration.capture;

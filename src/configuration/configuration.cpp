@@ -19,6 +19,7 @@
 #include "files/key_suggestion.h"
 #include "frames/mask_file.h"
 #include "geometry/angles.h"
+#include "geometry/distortion_reach.h"
 
 namespace edgeslam {
 namespace {
@@ -205,6 +206,14 @@ std::string presumedLens(const Configuration& configuration) {
       configuration.source.c_str(), camera.fx, degrees(2 * half_view));
 }
 
+std::string doubtfulDistortion(const Camera& camera) {
+  if (reachesCorners(camera)) return "";
+  return formatted(
+      "the distortion of the calibration cannot be right farther than %.0f pixels from the centre, and the farthest "
+      "corner is at %.0f: a guess takes its place; calibrate with views of the board in the corners of the image",
+      seenAtReach(camera) * camera.fx, farthestCorner(camera) * camera.fx);
+}
+
 std::string maskProblem(const Camera& camera, const Configuration& configuration) {
   const std::string wrong = configuration.mask ? maskSizeProblem(*configuration.mask, camera) : "";
   return wrong.empty() ? "" : "camera.mask: " + configuration.mask_path + " " + wrong;
@@ -215,6 +224,8 @@ Camera asConfigured(Camera camera, const Configuration& configuration) {
   if (!wrong.empty()) throw InputError(configuration.source + ": " + wrong);
   camera.readout_s = configuration.readout_s.value_or(camera.readout_s);
   camera.mask = configuration.mask;
+  camera = withBelievableDistortion(camera);
+  camera.distortion_reach = distortionReach(camera);
   return camera;
 }
 

@@ -44,6 +44,7 @@ struct InertiaConfiguration {
 struct Configuration {
   Settings settings;
   std::optional<Camera> camera;  // where the file gives one
+  std::string camera_doubt;      // what is to be told of its calibration (doubtfulDistortion)
   // Where the file gives it without a calibration: instead of that of whatever calibration is taken.
   std::optional<double> readout_s;
   bool has_readout = false;                // the file gives camera.readout, by itself or beside the calibration
@@ -59,11 +60,14 @@ struct Configuration {
 // What is to be told where the lens is presumed; empty where it is not.
 std::string presumedLens(const Configuration& configuration);
 
+// What is to be told where a calibration's distortion cannot be right over the whole image; empty where it can.
+std::string doubtfulDistortion(const Camera& camera);
+
 // Why the configuration's mask cannot be that of the camera: `camera.mask: ...`; empty where it can, or there is none.
 std::string maskProblem(const Camera& camera, const Configuration& configuration);
 
-// The camera with what the configuration gives of it by itself: its readout and its mask. Throws InputError where there
-// is a maskProblem().
+// The camera with what the configuration gives of it by itself, its readout and its mask, and with a distortion that
+// can be believed. Throws InputError where there is a maskProblem().
 Camera asConfigured(Camera camera, const Configuration& configuration);
 
 // The camera with the readout that was found with the inertial unit, where that is used and its own calibration has

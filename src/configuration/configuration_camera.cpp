@@ -204,6 +204,7 @@ void readCameraSection(const YAML::Node& section, Configuration& configuration, 
   if (!wrong_mask.empty()) {
     tell((mask ? mask : section).Mark().line, wrong_mask);
   } else if (configuration.camera) {
+    configuration.camera_doubt = doubtfulDistortion(*configuration.camera);
     configuration.camera = asConfigured(*configuration.camera, configuration);
   }
   if (readout || has_calibration) configuration.has_readout = configuration.readout_s.has_value();

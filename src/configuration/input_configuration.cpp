@@ -19,4 +19,9 @@ Camera cameraFor(const FrameSource& source, const Configuration& configuration, 
                    "the camera's size alone (camera.width and camera.height) to have it found on the way");
 }
 
+std::string calibrationDoubt(const FrameSource& source, const Configuration& configuration) {
+  if (configuration.camera || !source.camera()) return configuration.camera_doubt;
+  return doubtfulDistortion(*source.camera());
+}
+
 }  // namespace edgeslam

@@ -16,4 +16,7 @@ Configuration configurationFor(const FrameSource& source, const std::string& fil
 // InputError, which names `input`, where there is no calibration.
 Camera cameraFor(const FrameSource& source, const Configuration& configuration, const std::string& input);
 
+// What is to be told of that calibration where its distortion cannot be right; empty where nothing is.
+std::string calibrationDoubt(const FrameSource& source, const Configuration& configuration);
+
 }  // namespace edgeslam

@@ -4,17 +4,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/distortion_reach.h"
+
 namespace edgeslam {
 namespace {
 
 // Distorted normalized coordinates of undistorted ones, and their 2x2 derivative.
-Eigen::Vector2d distortRadialTangential(const std::array<double, 5>& k, const Eigen::Vector2d& u,
-                                        Eigen::Matrix2d* derivative) {
+Eigen::Vector2d distortRadialTangential(const Camera& camera, const Eigen::Vector2d& u, Eigen::Matrix2d* derivative) {
+  const std::array<double, 5>& k = camera.distortion;
   const double x = u.x(), y = u.y(), r2 = x * x + y * y;
   const double k1 = k[0], k2 = k[1], p1 = k[2], p2 = k[3], k3 = k[4];
-  const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  double radial_r2 = k1 + r2 * (2 * k2 + 3 * k3 * r2);  // d radial / d r2
+  if (r2 > camera.distortion_reach * camera.distortion_reach) {
+    const DistortionTangent tangent = distortionTangent(camera);
+    const double r = std::sqrt(r2);
+    radial = tangent.slope + tangent.offset / r;
+    radial_r2 = -0.5 * tangent.offset / (r2 * r);
+  }
   if (derivative) {
-    const double radial_r2 = k1 + r2 * (2 * k2 + 3 * k3 * r2);  // d radial / d r2
     (*derivative) << radial + 2 * x * x * radial_r2 + 2 * p1 * y + 6 * p2 * x,
         2 * x * y * radial_r2 + 2 * p1 * x + 2 * p2 * y, 2 * x * y * radial_r2 + 2 * p1 * x + 2 * p2 * y,
         radial + 2 * y * y * radial_r2 + 6 * p1 * y + 2 * p2 * x;
@@ -23,7 +31,13 @@ Eigen::Vector2d distortRadialTangential(const std::array<double, 5>& k, const Ei
 }
 
 // Distorted angle of the angle theta [rad] from the optical axis, and its derivative.
-double distortAngle(const std::array<double, 5>& k, double theta, double* derivative) {
+double distortAngle(const Camera& camera, double theta, double* derivative) {
+  if (theta > camera.distortion_reach) {
+    const DistortionTangent tangent = distortionTangent(camera);
+    if (derivative) *derivative = tangent.slope;
+    return tangent.offset + tangent.slope * theta;
+  }
+  const std::array<double, 5>& k = camera.distortion;
   const double t2 = theta * theta;
   if (derivative) *derivative = 1 + t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
   return theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
@@ -34,7 +48,7 @@ Eigen::Vector2d projectKannalaBrandt(const Camera& camera, const Eigen::Vector3d
   const double radius = std::hypot(p.x(), p.y());
   const double squared = radius * radius + p.z() * p.z();
   double angle_derivative = 1;
-  const double distorted = distortAngle(camera.distortion, std::atan2(radius, p.z()), &angle_derivative);
+  const double distorted = distortAngle(camera, std::atan2(radius, p.z()), &angle_derivative);
   if (radius < 1e-9 * std::abs(p.z())) {
     if (jacobian) (*jacobian) << camera.fx / p.z(), 0, 0, 0, camera.fy / p.z(), 0;
     return {camera.fx * p.x() / p.z() + camera.cx, camera.fy * p.y() / p.z() + camera.cy};
@@ -55,11 +69,11 @@ Eigen::Vector2d projectKannalaBrandt(const Camera& camera, const Eigen::Vector3d
   return {camera.fx * distorted * direction.x() + camera.cx, camera.fy * distorted * direction.y() + camera.cy};
 }
 
-Eigen::Vector2d undistortRadialTangential(const std::array<double, 5>& k, const Eigen::Vector2d& distorted) {
+Eigen::Vector2d undistortRadialTangential(const Camera& camera, const Eigen::Vector2d& distorted) {
   Eigen::Vector2d u = distorted;
   for (int i = 0; i < 20; ++i) {
     Eigen::Matrix2d derivative;
-    const Eigen::Vector2d error = distortRadialTangential(k, u, &derivative) - distorted;
+    const Eigen::Vector2d error = distortRadialTangential(camera, u, &derivative) - distorted;
     const Eigen::Vector2d step = derivative.inverse() * error;
     if (!step.allFinite()) break;
     u -= step;
@@ -68,11 +82,11 @@ Eigen::Vector2d undistortRadialTangential(const std::array<double, 5>& k, const 
   return u;
 }
 
-double undistortAngle(const std::array<double, 5>& k, double distorted) {
+double undistortAngle(const Camera& camera, double distorted) {
   double theta = distorted;
   for (int i = 0; i < 20; ++i) {
     double derivative = 1;
-    const double step = (distortAngle(k, theta, &derivative) - distorted) / derivative;
+    const double step = (distortAngle(camera, theta, &derivative) - distorted) / derivative;
     if (!std::isfinite(step)) break;
     theta -= step;
     if (std::abs(step) < 1e-12) break;
@@ -87,7 +101,7 @@ Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point, Eige
   const double inverse_z = 1.0 / point.z();
   const Eigen::Vector2d u(point.x() * inverse_z, point.y() * inverse_z);
   Eigen::Matrix2d derivative;
-  const Eigen::Vector2d d = distortRadialTangential(camera.distortion, u, jacobian ? &derivative : nullptr);
+  const Eigen::Vector2d d = distortRadialTangential(camera, u, jacobian ? &derivative : nullptr);
   if (jacobian) {
     Eigen::Matrix<double, 2, 3> normalized;
     normalized << inverse_z, 0, -u.x() * inverse_z, 0, inverse_z, -u.y() * inverse_z;
@@ -103,11 +117,11 @@ Eigen::Vector3d bearing(const Camera& camera, const Eigen::Vector2d& pixel) {
   if (camera.model == CameraModel::kannala_brandt) {
     const double distorted_angle = distorted.norm();
     if (distorted_angle < 1e-12) return Eigen::Vector3d::UnitZ();
-    const double theta = undistortAngle(camera.distortion, distorted_angle);
+    const double theta = undistortAngle(camera, distorted_angle);
     const Eigen::Vector2d direction = distorted / distorted_angle;
     return {std::sin(theta) * direction.x(), std::sin(theta) * direction.y(), std::cos(theta)};
   }
-  const Eigen::Vector2d u = undistortRadialTangential(camera.distortion, distorted);
+  const Eigen::Vector2d u = undistortRadialTangential(camera, distorted);
   return Eigen::Vector3d(u.x(), u.y(), 1).normalized();
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <memory>
 
 namespace edgeslam {
@@ -25,11 +26,14 @@ struct Camera {
   std::array<double, 5> distortion{0, 0, 0, 0, 0};  // radial-tangential: k1 k2 p1 p2 k3; Kannala-Brandt: k1 k2 k3 k4 0
   // From the first row's reading to the last one's [s]. 0: a global shutter; negative: rows are read from below.
   double readout_s = 0;
+  // How far from the axis the distortion's polynomial counts: tangent of the angle, or for Kannala-Brandt the angle
+  // itself [rad]. Farther out it goes on along its tangent (distortion_reach.h).
+  double distortion_reach = std::numeric_limits<double>::infinity();
   // Where its images are not looked at (camera_mask.h); null: nowhere.
   std::shared_ptr<const CameraMask> mask = nullptr;
 };
 
-// The same calibration. The mask is none of it: a map is good with any.
+// The same calibration. The mask is none of it: a map is good with any. How far the distortion counts follows from it.
 inline bool operator==(const Camera& a, const Camera& b) {
   return a.model == b.model && a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy &&
          a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion && a.readout_s == b.readout_s;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "geometry/camera.h"
+#include "geometry/distortion_reach.h"
 
 namespace edgeslam {
 
@@ -22,9 +23,6 @@ inline bool operator==(const FoundCamera& a, const FoundCamera& b) {
 }
 inline bool operator!=(const FoundCamera& a, const FoundCamera& b) { return !(a == b); }
 
-// In steps of a millionth: so it is the same to the last bit when a saved map's camera tells it again.
-inline double inMillionths(double value) { return std::ldexp(std::round(std::ldexp(value, 20)), -20); }
-
 // A calibrated camera, as it was found to be.
 inline Camera withFound(Camera camera, const FoundCamera& found) {
   camera.readout_s = found.readout_s.value_or(camera.readout_s);
@@ -33,6 +31,7 @@ inline Camera withFound(Camera camera, const FoundCamera& found) {
   camera.cx += found.principal_point[0];
   camera.cy += found.principal_point[1];
   for (std::size_t k = 0; k < found.radial.size(); ++k) camera.distortion[k] += found.radial[k];
+  camera.distortion_reach = distortionReach(camera);
   return camera;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/distortion_reach.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/undistortion.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set
@@ -38,10 +40,13 @@ Vector set(double value) { return hn::Set(Doubles(), value); }
 Mask isFinite(Vector value) { return hn::Le(hn::Abs(value), set(std::numeric_limits<double>::max())); }
 
 // Undistorts normalized coordinates in place.
-void undistortRadialTangential(const std::array<double, 5>& k, Vector& u, Vector& v) {
+void undistortRadialTangential(const Camera& camera, Vector& u, Vector& v) {
   using hn::Add;
   using hn::Mul;
   using hn::Sub;
+  const std::array<double, 5>& k = camera.distortion;
+  const DistortionTangent tangent = distortionTangent(camera);
+  const Vector reach_squared = set(camera.distortion_reach * camera.distortion_reach);
   const double k1 = k[0], k2 = k[1], p1 = k[2], p2 = k[3], k3 = k[4];
   const Vector distorted_x = u, distorted_y = v;
   Mask active = isFinite(set(0));
@@ -49,8 +54,14 @@ void undistortRadialTangential(const std::array<double, 5>& k, Vector& u, Vector
     const Vector x = u, y = v;
     const Vector twice_x = Add(x, x), twice_y = Add(y, y);
     const Vector r2 = Add(Mul(x, x), Mul(y, y));
-    const Vector radial = Add(set(1), Mul(r2, Add(set(k1), Mul(r2, Add(set(k2), Mul(r2, set(k3)))))));
-    const Vector radial_r2 = Add(set(k1), Mul(r2, Add(set(2 * k2), Mul(set(3 * k3), r2))));
+    Vector radial = Add(set(1), Mul(r2, Add(set(k1), Mul(r2, Add(set(k2), Mul(r2, set(k3)))))));
+    Vector radial_r2 = Add(set(k1), Mul(r2, Add(set(2 * k2), Mul(set(3 * k3), r2))));
+    const Mask beyond = hn::Gt(r2, reach_squared);
+    if (!hn::AllFalse(Doubles(), beyond)) {
+      const Vector r = hn::Sqrt(r2);
+      radial = hn::IfThenElse(beyond, Add(set(tangent.slope), hn::Div(set(tangent.offset), r)), radial);
+      radial_r2 = hn::IfThenElse(beyond, hn::Div(set(-0.5 * tangent.offset), Mul(r2, r)), radial_r2);
+    }
     const Vector xx = Add(Add(Add(radial, Mul(Mul(twice_x, x), radial_r2)), Mul(set(2 * p1), y)), Mul(set(6 * p2), x));
     const Vector xy = Add(Add(Mul(Mul(twice_x, y), radial_r2), Mul(set(2 * p1), x)), Mul(set(2 * p2), y));
     const Vector yy = Add(Add(Add(radial, Mul(Mul(twice_y, y), radial_r2)), Mul(set(6 * p1), y)), Mul(set(2 * p2), x));
@@ -71,17 +82,22 @@ void undistortRadialTangential(const std::array<double, 5>& k, Vector& u, Vector
 }
 
 // The angle from the optical axis of a distorted one [rad].
-Vector undistortAngle(const std::array<double, 5>& k, Vector distorted) {
+Vector undistortAngle(const Camera& camera, Vector distorted) {
   using hn::Add;
   using hn::Mul;
+  const std::array<double, 5>& k = camera.distortion;
+  const DistortionTangent tangent = distortionTangent(camera);
   Vector theta = distorted;
   Mask active = isFinite(set(0));
   for (int i = 0; i < most_iterations; ++i) {
     const Vector t2 = Mul(theta, theta);
     const Vector inner = Add(set(7 * k[2]), Mul(Mul(t2, set(9)), set(k[3])));
-    const Vector derivative = Add(set(1), Mul(t2, Add(set(3 * k[0]), Mul(t2, Add(set(5 * k[1]), Mul(t2, inner))))));
+    Vector derivative = Add(set(1), Mul(t2, Add(set(3 * k[0]), Mul(t2, Add(set(5 * k[1]), Mul(t2, inner))))));
     const Vector polynomial = Add(set(k[1]), Mul(t2, Add(set(k[2]), Mul(t2, set(k[3])))));
-    const Vector made = Mul(theta, Add(set(1), Mul(t2, Add(set(k[0]), Mul(t2, polynomial)))));
+    Vector made = Mul(theta, Add(set(1), Mul(t2, Add(set(k[0]), Mul(t2, polynomial)))));
+    const Mask beyond = hn::Gt(theta, set(camera.distortion_reach));
+    derivative = hn::IfThenElse(beyond, set(tangent.slope), derivative);
+    made = hn::IfThenElse(beyond, Add(set(tangent.offset), Mul(set(tangent.slope), theta)), made);
     const Vector step = hn::Div(hn::Sub(made, distorted), derivative);
     active = hn::And(active, isFinite(step));
     theta = hn::IfThenElse(active, hn::Sub(theta, step), theta);
@@ -92,19 +108,19 @@ Vector undistortAngle(const std::array<double, 5>& k, Vector distorted) {
 }
 
 // Of a vector of normalized distorted coordinates: 3 values each.
-void pinholeBearings(const std::array<double, 5>& k, Vector x, Vector y, double* HWY_RESTRICT bearings) {
-  undistortRadialTangential(k, x, y);
+void pinholeBearings(const Camera& camera, Vector x, Vector y, double* HWY_RESTRICT bearings) {
+  undistortRadialTangential(camera, x, y);
   const Vector squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), set(1));
   const Vector norm = hn::Sqrt(squared);
   hn::StoreInterleaved3(hn::Div(x, norm), hn::Div(y, norm), hn::Div(set(1), norm), Doubles(), bearings);
 }
 
-void fisheyeBearings(const std::array<double, 5>& k, Vector x, Vector y, double* HWY_RESTRICT bearings) {
+void fisheyeBearings(const Camera& camera, Vector x, Vector y, double* HWY_RESTRICT bearings) {
   const Doubles d;
   HWY_ALIGN double angles[8], directions_x[8], directions_y[8];
   const Vector distorted = hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)));
   const Mask off_axis = hn::Ge(distorted, set(1e-12));
-  hn::Store(hn::IfThenElseZero(off_axis, undistortAngle(k, distorted)), d, angles);
+  hn::Store(hn::IfThenElseZero(off_axis, undistortAngle(camera, distorted)), d, angles);
   hn::Store(hn::IfThenElseZero(off_axis, hn::Div(x, distorted)), d, directions_x);
   hn::Store(hn::IfThenElseZero(off_axis, hn::Div(y, distorted)), d, directions_y);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
@@ -130,9 +146,9 @@ void bearingsByVectors(const Camera& camera, const Eigen::Vector2d* pixels, std:
     x = hn::Div(hn::Sub(x, set(camera.cx)), set(camera.fx));
     y = hn::Div(hn::Sub(y, set(camera.cy)), set(camera.fy));
     if (camera.model == CameraModel::kannala_brandt) {
-      fisheyeBearings(camera.distortion, x, y, made);
+      fisheyeBearings(camera, x, y, made);
     } else {
-      pinholeBearings(camera.distortion, x, y, made);
+      pinholeBearings(camera, x, y, made);
     }
     for (std::size_t i = 0; i < here; ++i) bearings[first + i] = {made[3 * i], made[3 * i + 1], made[3 * i + 2]};
   }

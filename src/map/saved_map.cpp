@@ -11,6 +11,7 @@
 #include "edgeslam/input_error.h"
 #include "files/atomic_file.h"
 #include "files/format_text.h"
+#include "geometry/millionths.h"
 #include "map/map_check.h"
 
 namespace edgeslam {

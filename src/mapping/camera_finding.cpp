@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "geometry/millionths.h"
 #include "map/worlds.h"
 #include "mapping/rays_anew.h"
 #include "mapping/readout_estimate.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "geometry/one_to_one.h"
+#include "geometry/distortion_reach.h"
 #include "mapping/rays_anew.h"
 
 namespace edgeslam {
@@ -53,7 +53,7 @@ Map seenBy(const std::vector<KeyframeId>& keyframes, Map map) {
 }
 
 double costWith(const LookedAt& at, const Camera& camera) {
-  if (!isOneToOne(camera) && isOneToOne(at.camera)) return std::numeric_limits<double>::infinity();
+  if (!reachesCorners(camera) && reachesCorners(at.camera)) return std::numeric_limits<double>::infinity();
   Map trial = at.map;
   takeRaysAnew(camera, withHosts(trial, at.keyframes), trial);
   double left = 0;

@@ -6,7 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/one_to_one.h"
+#include "geometry/distortion_reach.h"
+#include "geometry/millionths.h"
 
 namespace edgeslam {
 namespace {

@@ -41,6 +41,14 @@ TEST(ConfigurationCamera, ReadsAnInlineCalibration) {
   EXPECT_EQ(read.camera->distortion, (std::array<double, 5>{0.1, -0.2, 0.01, 0.02, 0.3}));
 }
 
+TEST(ConfigurationCamera, TellsADistortionThatCannotBeRight) {
+  EXPECT_EQ(configurationWithCameras("camera: {" + calibration_text + "}\n").camera_doubt, "");
+  const Configuration read = configurationWithCameras(
+      "camera: {width: 640, height: 480, fx: 320, fy: 320, cx: 320, cy: 240, k1: 0.02, k2: 0.04, k3: -0.08}\n");
+  EXPECT_NE(read.camera_doubt.find("the farthest corner is at 400"), std::string::npos) << read.camera_doubt;
+  EXPECT_EQ(read.camera->distortion[4], 0) << "another takes its place";
+}
+
 TEST(ConfigurationCamera, ReadsAFisheye) {
   const Configuration read = configurationWithCameras(
       "camera: {model: kannala_brandt, width: 640, height: 480, fx: 300, fy: 300, cx: 320, cy: 240, k1: 1, k2: 2, k3: "

@@ -14,6 +14,8 @@ class EveryCamera : public testing::TestWithParam<NamedCamera> {};
 
 INSTANTIATE_TEST_SUITE_P(Calibrations, EveryCamera, testing::ValuesIn(cameras()),
                          [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(FoldingCalibrations, EveryCamera, testing::ValuesIn(foldingCameras()),
+                         [](const auto& tested) { return tested.param.name; });
 
 TEST_P(EveryCamera, BearingIsUnitAndProjectsBackOverTheWholeImage) {
   const Camera& camera = GetParam().camera;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/camera.h"
+#include "geometry/distortion_reach.h"
 #include "geometry/pose.h"
 #include "unit/geometry/degree.h"
 
@@ -50,6 +51,18 @@ inline std::vector<NamedCamera> cameras() {
           {"office", {pinhole, 640, 480, 481.2, 480, 319.5, 239.5, {0, 0, 0, 0, 0}}},
           {"xyz", {pinhole, 640, 480, 517.3, 516.5, 318.6, 255.3, {0.12, -0.22, -0.0022, 0.0012, 0}}},
           {"fisheye", fisheyeCamera()}};
+}
+
+// Calibrations whose distortion cannot be believed in the corners: a phone's, as others have made it with a board that
+// was never there, a wide lens's and a fisheye's, which miss a coefficient.
+inline std::vector<NamedCamera> foldingCameras() {
+  const CameraModel pinhole = CameraModel::pinhole_radial_tangential;
+  std::vector<NamedCamera> folding = {
+      {"folding_phone", {pinhole, 960, 540, 438.3, 437.9, 494, 263.5, {-0.0213, 0.0593, -0.0004, 0.001, -0.0637}}},
+      {"folding_wide", {pinhole, 640, 480, 320, 320, 320, 240, {-0.3, 0.02, 0, 0, 0}}},
+      {"folding_fisheye", {CameraModel::kannala_brandt, 640, 480, 240, 240, 320, 240, {-0.1, 0, 0, 0, 0}}}};
+  for (NamedCamera& named : folding) named.camera.distortion_reach = distortionReach(named.camera);
+  return folding;
 }
 
 inline Eigen::Vector2d randomPixel(const Camera& camera, Random& random) {

@@ -16,6 +16,8 @@ class UndistortionOf : public testing::TestWithParam<NamedCamera> {};
 
 INSTANTIATE_TEST_SUITE_P(Calibrations, UndistortionOf, testing::ValuesIn(cameras()),
                          [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(FoldingCalibrations, UndistortionOf, testing::ValuesIn(foldingCameras()),
+                         [](const auto& tested) { return tested.param.name; });
 
 std::vector<Eigen::Vector2d> pixelsOf(const Camera& camera, std::size_t count) {
   Random random(3);

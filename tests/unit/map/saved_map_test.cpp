@@ -7,6 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "geometry/millionths.h"
 #include "unit/files/resource_limit.h"
 #include "unit/files/temporary_folder.h"
 #include "unit/map/made_map.h"

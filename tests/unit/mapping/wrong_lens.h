@@ -1,7 +1,7 @@
 // A walk that is mapped with a calibration whose lens is not the camera's.
 #pragma once
 
-#include "geometry/one_to_one.h"
+#include "geometry/distortion_reach.h"
 #include "mapping/camera_trial.h"
 #include "unit/mapping/rolling_walk.h"
 
