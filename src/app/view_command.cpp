@@ -19,11 +19,12 @@ struct ViewArguments {
 };
 
 // Nothing is sent to a robot and nothing is written: it is for looking.
-DaemonSetup setupOf(const ViewArguments& arguments) {
+DaemonSetup setupOf(const ViewArguments& arguments, EventLog& log) {
   const std::unique_ptr<FrameSource> source = openFrameSource(arguments.input);
   DaemonSetup setup;
   setup.configuration = configurationFor(*source, arguments.configuration);
   setup.camera = cameraFor(*source, setup.configuration, arguments.input);
+  if (const std::string doubt = calibrationDoubt(*source, setup.configuration); !doubt.empty()) log.tell(doubt);
   setup.capture.device = arguments.input;
   setup.capture.width = setup.camera.width;
   setup.capture.height = setup.camera.height;
@@ -48,7 +49,7 @@ DaemonSetup setupOf(const ViewArguments& arguments) {
 
 int runView(const ViewArguments& arguments) {
   EventLog log(std::cerr);
-  Daemon daemon(setupOf(arguments), log);
+  Daemon daemon(setupOf(arguments, log), log);
   daemon.run();
   return exit_done;
 }

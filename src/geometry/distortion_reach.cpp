@@ -5,23 +5,22 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "geometry/millionths.h"
 
 namespace edgeslam {
 namespace {
 
-// In Camera::distortion.
-std::vector<std::size_t> indicesOfRadial(const Camera& camera) {
-  if (camera.model == CameraModel::kannala_brandt) return {0, 1, 2, 3};
-  return {0, 1, 4};
+std::size_t radialCount(const Camera& camera) { return camera.model == CameraModel::kannala_brandt ? 4 : 3; }
+
+// Of a radial coefficient in Camera::distortion, where the tangential ones stand between those of a pinhole camera.
+std::size_t indexOfRadial(const Camera& camera, std::size_t i) {
+  return camera.model == CameraModel::kannala_brandt || i < 2 ? i : 4;
 }
 
 std::array<double, 4> radialCoefficients(const Camera& camera) {
   std::array<double, 4> k{};
-  const std::vector<std::size_t> indices = indicesOfRadial(camera);
-  for (std::size_t i = 0; i < indices.size(); ++i) k[i] = camera.distortion[indices[i]];
+  for (std::size_t i = 0; i < radialCount(camera); ++i) k[i] = camera.distortion[indexOfRadial(camera, i)];
   return k;
 }
 
@@ -51,9 +50,8 @@ Camera withFewerCoefficients(Camera camera, double farthest, std::size_t kept) {
     gradient += r * powers * (distortedAt(k, r) - r);
   }
   const Eigen::VectorXd fitted = information.ldlt().solve(gradient);
-  const std::vector<std::size_t> indices = indicesOfRadial(camera);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    camera.distortion[indices[i]] = i < kept ? inMillionths(fitted(static_cast<Eigen::Index>(i))) : 0;
+  for (std::size_t i = 0; i < radialCount(camera); ++i) {
+    camera.distortion[indexOfRadial(camera, i)] = i < kept ? inMillionths(fitted(static_cast<Eigen::Index>(i))) : 0;
   }
   return camera;
 }
@@ -99,7 +97,7 @@ Camera withBelievableDistortion(const Camera& camera) {
   if (reachesCorners(camera)) return camera;
   constexpr double share_to_fit = 0.85;  // of the reach: on the way to where it turns back it errs already
   const double farthest = share_to_fit * distortionReach(camera);
-  for (std::size_t kept = indicesOfRadial(camera).size() - 1; kept > 0; --kept) {
+  for (std::size_t kept = radialCount(camera) - 1; kept > 0; --kept) {
     const Camera simpler = withFewerCoefficients(camera, farthest, kept);
     if (reachesCorners(simpler)) return simpler;
   }
