@@ -50,8 +50,8 @@ Camera cameraOf(const FrameSource& source, Configuration configuration, const Kn
                 const std::string& input) {
   const Camera camera = cameraFor(source, configuration, input);
   if (configuration.settings.mapping.camera_finding.lens_is_presumed) {
-    throw InputError(configuration.source +
-                     ": only the camera's size is given; an inertial unit is found with a calibrated camera only");
+    throw InputError((configuration.source.empty() ? input : configuration.source) +
+                     ": only the camera's size is known; an inertial unit is found with a calibrated camera only");
   }
   configuration.inertia.is_used = true;
   configuration.inertia.unit = known.unit;

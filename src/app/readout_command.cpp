@@ -111,7 +111,8 @@ int findReadout(const std::string& recording, const std::string& configuration_f
   const Configuration configuration = configurationFor(*source, configuration_file);
   const Camera camera = cameraFor(*source, configuration, recording);
   if (configuration.settings.mapping.camera_finding.lens_is_presumed) {
-    throw InputError(configuration.source + ": only the camera's size is given; its readout needs a calibration");
+    const std::string& named = configuration.source.empty() ? recording : configuration.source;
+    throw InputError(named + ": only the camera's size is known; its readout needs a calibration");
   }
   const double longest_s = std::min(frameInterval(recording), longest_readout_tried_s);
   Trials trials(recording, camera, configuration.settings);

@@ -200,10 +200,11 @@ std::string presumedLens(const Configuration& configuration) {
   if (!configuration.camera || !configuration.settings.mapping.camera_finding.lens_is_presumed) return "";
   const Camera& camera = *configuration.camera;
   const double half_view = std::atan(0.5 * std::max(camera.width, camera.height) / camera.fx);
+  const std::string named = configuration.source.empty() ? "" : configuration.source + ": ";
   return formatted(
-      "%s: only the camera's size is given: a focal length of %.0f px is presumed (%.0f degrees are seen), "
+      "%sonly the camera's size is known: a focal length of %.0f px is presumed (%.0f degrees are seen), "
       "and looked for; poses bend until it is found",
-      configuration.source.c_str(), camera.fx, degrees(2 * half_view));
+      named.c_str(), camera.fx, degrees(2 * half_view));
 }
 
 std::string doubtfulDistortion(const Camera& camera) {

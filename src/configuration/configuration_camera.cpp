@@ -51,13 +51,6 @@ std::string setNumber(const ConfigurationKey& key, const YAML::Node& value) {
 // Of the longer side. Most phones, webcams and cameras of robots see 50 to 80 degrees along it.
 constexpr double presumed_focal_length = 0.8;
 
-// Of a camera of which only the size is known: a run finds how its lens is (mapping/camera_finding.h).
-void presumeLens(Camera& camera) {
-  camera.fx = camera.fy = presumed_focal_length * std::max(camera.width, camera.height);
-  camera.cx = 0.5 * (camera.width - 1);
-  camera.cy = 0.5 * (camera.height - 1);
-}
-
 bool hasOnlySize(const YAML::Node& section, const std::vector<CalibrationKey>& keys) {
   if (section["model"] || !section["width"] || !section["height"]) return false;
   return std::none_of(keys.begin() + 2, keys.end(),
@@ -98,7 +91,7 @@ void readInlineCalibration(const YAML::Node& section, Configuration& configurati
       reject(section[name], std::string("camera.") + name + " is no coefficient of this camera model");
   }
   if (!good) return;
-  if (has_only_size) presumeLens(camera);
+  if (has_only_size) camera = presumedCamera(camera.width, camera.height);
   configuration.settings.mapping.camera_finding.lens_is_presumed = has_only_size;
   if (camera.cx < 0 || camera.cx > camera.width - 1 || camera.cy < 0 || camera.cy > camera.height - 1) {
     return tell(section["cx"].Mark().line, "camera.cx, camera.cy: the principal point lies outside the image");
@@ -215,6 +208,16 @@ void readCameraSection(const YAML::Node& section, Configuration& configuration, 
     const std::string wrong = readPose(pose, configuration.body_T_camera);
     if (!wrong.empty()) tell(pose.Mark().line, "camera.body_T_camera: " + wrong);
   }
+}
+
+Camera presumedCamera(int width, int height) {
+  Camera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = presumed_focal_length * std::max(width, height);
+  camera.cx = 0.5 * (width - 1);
+  camera.cy = 0.5 * (height - 1);
+  return camera;
 }
 
 std::string formatCameraSection(const Configuration& configuration) {

@@ -22,6 +22,9 @@ bool isCalibration(const YAML::Node& document);
 // The keys of an inline calibration of either camera model, for the table of keys: documented, without fields.
 std::vector<ConfigurationKey> calibrationKeyNames();
 
+// A camera of which only the size is known [px]: a run finds how its lens is (mapping/camera_finding.h).
+Camera presumedCamera(int width, int height);
+
 // Fills camera, readout_s, mask and body_T_camera from the section's mapping; the paths of a calibration and of a mask
 // are relative to the configuration file. Unknown and repeated keys are the caller's business.
 void readCameraSection(const YAML::Node& section, Configuration& configuration, const TellProblem& tell);

@@ -8,7 +8,8 @@
 
 namespace edgeslam {
 
-// Of the file; where `file` is empty, the one that a recording was made with, and the defaults for other frames. Throws
+// Of the file; where `file` is empty, the one that a recording was made with, and the defaults for other frames. The
+// lens of a video that brings its own times is presumed where there is no calibration, and looked for. Throws
 // InputError as readConfiguration() does.
 Configuration configurationFor(const FrameSource& source, const std::string& file);
 

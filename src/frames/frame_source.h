@@ -34,6 +34,8 @@ class FrameSource {
   virtual std::string kind() const = 0;
   // The calibration that lies beside the frames (camera.yaml, EuRoC's sensor.yaml), if there is one.
   virtual std::optional<Camera> camera() const = 0;
+  // Size of the pictures of a video that brings its own times, as phones and webcams make them [px]; empty for others.
+  virtual cv::Size videoSize() const { return {}; }
   // Path of the ground truth beside the frames (groundtruth.txt, EuRoC's state_groundtruth_estimate0/data.csv), or
   // empty.
   virtual std::string groundTruthPath() const = 0;

@@ -26,6 +26,8 @@ class VideoDecoder {
   virtual VideoPicture picture() = 0;
   // Presentation time of the current picture, from the video's beginning [ms]; not a number where it has none.
   virtual double positionMilliseconds() const = 0;
+  virtual int width() const = 0;               // of the pictures, as the file says [px]; 0 where it does not
+  virtual int height() const = 0;              // likewise
   virtual double framesPerSecond() const = 0;  // 0 where the file does not say so
   virtual double frameCount() const = 0;       // as the file tells or its length lets expect; 0 where neither does
 };

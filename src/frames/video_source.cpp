@@ -153,6 +153,7 @@ class VideoSource : public FrameSource {
     return std::isfinite(count) && count > 0 && count < 1e9 ? static_cast<std::int64_t>(count) : 0;
   }
   std::string kind() const override { return "video"; }
+  cv::Size videoSize() const override { return {pictures_.decoder().width(), pictures_.decoder().height()}; }
   std::optional<Camera> camera() const override { return companions_.camera; }
   std::string groundTruthPath() const override { return companions_.ground_truth_path; }
   InertialFiles inertialFiles() const override { return companions_.inertial_files; }

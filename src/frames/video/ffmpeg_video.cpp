@@ -96,6 +96,9 @@ class FfmpegVideo : public VideoDecoder {
     return static_cast<double>(frame_->best_effort_timestamp - start) * ratio(stream_->time_base) * 1000;
   }
 
+  int width() const override { return codec_->width; }
+  int height() const override { return codec_->height; }
+
   double framesPerSecond() const override { return ratio(av_guess_frame_rate(format_.get(), stream_, nullptr)); }
 
   double frameCount() const override {

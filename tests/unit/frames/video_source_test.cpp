@@ -128,5 +128,14 @@ TEST(VideoSource, AVideoThatWasCutOffTellsHowManyFramesAreMissing) {
       "video.avi");
 }
 
+TEST(VideoSource, TellsItsSizeOnlyWhereItBringsItsOwnTimes) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(openFrames(writeVideo(folder, "walk.avi"))->videoSize(), cv::Size(64, 48));
+  const TemporaryFolder stamped;
+  writeVideo(stamped, "video.avi");
+  stamped.write("times.txt", "0.1\n0.2\n");
+  EXPECT_TRUE(openFrames(stamped.path(""))->videoSize().empty());
+}
+
 }  // namespace
 }  // namespace edgeslam
