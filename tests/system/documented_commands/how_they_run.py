@@ -42,6 +42,7 @@ INSTEAD = {
                    "edgeslam replay with_inertia --imu --output r3", "edgeslam replay with_inertia --wheels --output r4",
                    "edgeslam replay with_inertia --imu --wheels --output r5"]),
     "edgeslam replay DIR": Instead(PLACEHOLDERS, ["edgeslam replay my_recording"]),
+    "edgeslam replay VIDEO": Instead(PLACEHOLDERS + "; no video is there", ["edgeslam replay my_recording"]),
     "edgeslam replay RECORDING --realtime --lcm": Instead(
         PLACEHOLDERS, ["edgeslam replay my_recording --realtime --lcm"]),
     "edgeslam evaluate ESTIMATE GROUNDTRUTH [--alignment similarity|rigid|none] [--tolerance S] [--delta S] [--json FILE]":
