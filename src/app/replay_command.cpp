@@ -228,7 +228,7 @@ int runReplay(const ReplayArguments& arguments) {
   if (const std::string presumed = presumedLens(configuration); !presumed.empty()) {
     std::cerr << "edgeslam: " << presumed << "\n";
   }
-  if (const std::string doubt = calibrationDoubt(*source, configuration); !doubt.empty()) {
+  if (const std::string doubt = calibrationDoubt(source->camera(), configuration); !doubt.empty()) {
     std::cerr << "edgeslam: " << doubt << "\n";
   }
   const MeasuredBeside measured =

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/command_line.h"
+#include "configuration/input_configuration.h"
 #include "frames/frame_source.h"
 #include "map/saved_map.h"
 #include "recording/open_frame_source.h"
@@ -21,8 +22,7 @@ struct RunArguments {
 Camera cameraOf(const RunArguments& arguments, const Configuration& configuration, EventLog& log) {
   std::optional<Camera> beside;
   if (!arguments.source.empty()) beside = openFrameSource(arguments.source)->camera();
-  const std::string doubt = configuration.camera || !beside ? configuration.camera_doubt : doubtfulDistortion(*beside);
-  if (!doubt.empty()) log.tell(doubt);
+  if (const std::string doubt = calibrationDoubt(beside, configuration); !doubt.empty()) log.tell(doubt);
   if (configuration.camera) return *configuration.camera;
   if (beside) return asConfigured(*beside, configuration);
   throw InputError((arguments.configuration.empty() ? "" : arguments.configuration + ": ") +

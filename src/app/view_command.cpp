@@ -24,7 +24,8 @@ DaemonSetup setupOf(const ViewArguments& arguments, EventLog& log) {
   DaemonSetup setup;
   setup.configuration = configurationFor(*source, arguments.configuration);
   setup.camera = cameraFor(*source, setup.configuration, arguments.input);
-  if (const std::string doubt = calibrationDoubt(*source, setup.configuration); !doubt.empty()) log.tell(doubt);
+  if (const std::string doubt = calibrationDoubt(source->camera(), setup.configuration); !doubt.empty())
+    log.tell(doubt);
   setup.capture.device = arguments.input;
   setup.capture.width = setup.camera.width;
   setup.capture.height = setup.camera.height;

@@ -37,9 +37,8 @@ Camera cameraFor(const FrameSource& source, const Configuration& configuration, 
                    "the camera's size alone (camera.width and camera.height) to have it found on the way");
 }
 
-std::string calibrationDoubt(const FrameSource& source, const Configuration& configuration) {
-  if (configuration.camera || !source.camera()) return configuration.camera_doubt;
-  return doubtfulDistortion(*source.camera());
+std::string calibrationDoubt(const std::optional<Camera>& beside, const Configuration& configuration) {
+  return configuration.camera || !beside ? configuration.camera_doubt : doubtfulDistortion(*beside);
 }
 
 }  // namespace edgeslam

@@ -1,6 +1,7 @@
 // The configuration and the calibration that frames bring with them, where the user gives no others.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "configuration/configuration.h"
@@ -17,7 +18,8 @@ Configuration configurationFor(const FrameSource& source, const std::string& fil
 // InputError, which names `input`, where there is no calibration.
 Camera cameraFor(const FrameSource& source, const Configuration& configuration, const std::string& input);
 
-// What is to be told of that calibration where its distortion cannot be right; empty where nothing is.
-std::string calibrationDoubt(const FrameSource& source, const Configuration& configuration);
+// What is to be told of that calibration where its distortion cannot be right; empty where nothing is. `beside`: the
+// one beside the frames.
+std::string calibrationDoubt(const std::optional<Camera>& beside, const Configuration& configuration);
 
 }  // namespace edgeslam

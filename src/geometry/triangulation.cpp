@@ -24,8 +24,8 @@ bool isAhead(const Camera& camera, const Eigen::Vector3d& point) {
   return point.z() > least_cosine * point.norm();
 }
 
-// A polynomial distortion folds back far outside the image, where its derivative (symmetric but for fx and fy) is no
-// longer positive definite.
+// A distortion folds back far outside the image, where its derivative (symmetric but for fx and fy) is no longer
+// positive definite: the tangential one, and the radial one of a camera without its distortion's reach.
 bool isFolded(const Camera& camera, const Eigen::Matrix<double, 2, 3>& jacobian) {
   if (camera.model == CameraModel::kannala_brandt) return false;
   return jacobian(0, 0) <= 0 || jacobian(0, 0) * jacobian(1, 1) <= jacobian(0, 1) * jacobian(1, 0);
