@@ -10,8 +10,8 @@
 namespace edgeslam {
 namespace {
 
-// A node as Ceres sees it: rotation vector relative to where it started, translation, logarithm of the scale relative
-// to where it started. Seven numbers for seven unknowns.
+// A node as Ceres sees it: rotation vector relative to where it started, along the node's turn axes; translation;
+// logarithm of the scale relative to where it started. Seven numbers for seven unknowns, or fewer where some are kept.
 using NodeParameters = std::array<double, 7>;
 
 template <class T>
@@ -19,30 +19,47 @@ using Vector3 = Eigen::Matrix<T, 3, 1>;
 template <class T>
 using Quaternion = Eigen::Quaternion<T>;
 
+struct NodeStart {
+  Similarity world_S_node;
+  Eigen::Matrix3d turn_axes;  // columns, in the node's frame; the last one points up where that is kept
+};
+
+Eigen::Matrix3d turnAxes(const PoseGraph& graph, const PoseGraphNode& node) {
+  if (!graph.up) return Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d level = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), *graph.up).matrix();
+  return node.world_S_node.rotation.conjugate() * level;
+}
+
+NodeStart startOf(const PoseGraph& graph, int node) {
+  const PoseGraphNode& its = graph.nodes[static_cast<std::size_t>(node)];
+  return {its.world_S_node, turnAxes(graph, its)};
+}
+
 template <class T>
-Quaternion<T> rotationOf(const Eigen::Quaterniond& start, const T* parameters) {
+Quaternion<T> rotationOf(const NodeStart& start, const T* parameters) {
+  const Vector3<T> turn = start.turn_axes.cast<T>() * Vector3<T>(parameters[0], parameters[1], parameters[2]);
   T step[4];
-  ceres::AngleAxisToQuaternion(parameters, step);
-  return start.cast<T>() * Quaternion<T>(step[0], step[1], step[2], step[3]);
+  ceres::AngleAxisToQuaternion(turn.data(), step);
+  return start.world_S_node.rotation.cast<T>() * Quaternion<T>(step[0], step[1], step[2], step[3]);
 }
 
 // Error of an edge: from_S_to (measured), inverted, times from_S_to (of the nodes), as seven numbers.
 struct EdgeCost {
   EdgeCost(const PoseGraph& graph, const PoseGraphEdge& edge)
-      : from(graph.nodes[static_cast<std::size_t>(edge.from)].world_S_node),
-        to(graph.nodes[static_cast<std::size_t>(edge.to)].world_S_node),
+      : from(startOf(graph, edge.from)),
+        to(startOf(graph, edge.to)),
         to_S_from(edge.from_S_to.inverse()),
         weight(edge.weight),
         length(graph.length) {}
 
   template <class T>
   bool operator()(const T* from_parameters, const T* to_parameters, T* residuals) const {
-    const Quaternion<T> world_R_from = rotationOf(from.rotation, from_parameters);
-    const Quaternion<T> world_R_to = rotationOf(to.rotation, to_parameters);
+    const Quaternion<T> world_R_from = rotationOf(from, from_parameters);
+    const Quaternion<T> world_R_to = rotationOf(to, to_parameters);
     const Vector3<T> from_t(from_parameters[3], from_parameters[4], from_parameters[5]);
     const Vector3<T> to_t(to_parameters[3], to_parameters[4], to_parameters[5]);
-    const T from_log_scale = T(std::log(from.scale)) + from_parameters[6];
-    const T to_log_scale = T(std::log(to.scale)) + to_parameters[6];
+    const T from_log_scale = T(std::log(from.world_S_node.scale)) + from_parameters[6];
+    const T to_log_scale = T(std::log(to.world_S_node.scale)) + to_parameters[6];
 
     const Quaternion<T> from_R_world = world_R_from.conjugate();
     const Quaternion<T> from_R_to = from_R_world * world_R_to;
@@ -59,7 +76,7 @@ struct EdgeCost {
     return true;
   }
 
-  Similarity from, to;   // where the nodes started
+  NodeStart from, to;
   Similarity to_S_from;  // measured
   double weight, length;
 };
@@ -72,6 +89,7 @@ bool isFiniteSimilarity(const Similarity& similarity) {
 bool wellPosed(const PoseGraph& graph) {
   const int nodes = static_cast<int>(graph.nodes.size());
   if (!(graph.length > 0 && std::isfinite(graph.length))) return false;
+  if (graph.up && !(std::abs(graph.up->norm() - 1) < 1e-6)) return false;
   bool any_fixed = false;
   for (const PoseGraphNode& node : graph.nodes) {
     if (!isFiniteSimilarity(node.world_S_node)) return false;
@@ -84,11 +102,19 @@ bool wellPosed(const PoseGraph& graph) {
   return any_fixed && !graph.edges.empty();
 }
 
-Similarity similarityOf(const Similarity& start, const NodeParameters& parameters) {
-  const Eigen::Vector3d rotation_vector(parameters[0], parameters[1], parameters[2]);
-  return {start.scale * std::exp(parameters[6]),
-          (start.rotation * rotationExp(rotation_vector)).normalized(),
+Similarity similarityOf(const NodeStart& start, const NodeParameters& parameters) {
+  const Eigen::Vector3d turn = start.turn_axes * Eigen::Vector3d(parameters[0], parameters[1], parameters[2]);
+  return {start.world_S_node.scale * std::exp(parameters[6]),
+          (start.world_S_node.rotation * rotationExp(turn)).normalized(),
           {parameters[3], parameters[4], parameters[5]}};
+}
+
+// Which of a node's numbers stay as they are.
+std::vector<int> keptNumbers(const PoseGraph& graph) {
+  std::vector<int> kept;
+  if (graph.up) kept = {0, 1};
+  if (graph.keeps_scale) kept.push_back(6);
+  return kept;
 }
 
 }  // namespace
@@ -107,9 +133,13 @@ PoseGraphResult optimisePoseGraph(PoseGraph& graph, int iterations) {
                              parameters[static_cast<std::size_t>(edge.from)].data(),
                              parameters[static_cast<std::size_t>(edge.to)].data());
   }
+  const std::vector<int> kept = keptNumbers(graph);
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    if (graph.nodes[i].fixed && problem.HasParameterBlock(parameters[i].data())) {
+    if (!problem.HasParameterBlock(parameters[i].data())) continue;
+    if (graph.nodes[i].fixed) {
       problem.SetParameterBlockConstant(parameters[i].data());
+    } else if (!kept.empty()) {
+      problem.SetManifold(parameters[i].data(), new ceres::SubsetManifold(7, kept));
     }
   }
   ceres::Solver::Options options;
@@ -126,7 +156,7 @@ PoseGraphResult optimisePoseGraph(PoseGraph& graph, int iterations) {
 
   std::vector<Similarity> optimised;
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    optimised.push_back(similarityOf(graph.nodes[i].world_S_node, parameters[i]));
+    optimised.push_back(similarityOf(startOf(graph, static_cast<int>(i)), parameters[i]));
   }
   if (!summary.IsSolutionUsable() || !std::all_of(optimised.begin(), optimised.end(), isFiniteSimilarity))
     return result;

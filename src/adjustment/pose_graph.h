@@ -1,7 +1,10 @@
 // P27, first half: the drift that a loop shows is shared out over the keyframes between its ends, by a pose graph over
-// Sim(3) (Strasdat et al. 2010): rotations, positions and the scale of each keyframe's surroundings.
+// Sim(3) (Strasdat et al. 2010): rotations, positions and the scale of each keyframe's surroundings. What an inertial
+// unit or wheels know does not drift, and is kept: the scale, and which way is up. With both, four degrees of freedom
+// remain.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "geometry/similarity.h"
@@ -23,7 +26,9 @@ struct PoseGraphEdge {
 struct PoseGraph {
   std::vector<PoseGraphNode> nodes;
   std::vector<PoseGraphEdge> edges;
-  double length = 1;  // an error in position by this counts as one in rotation by 1 rad [map units]
+  double length = 1;                  // an error in position by this counts as one in rotation by 1 rad [map units]
+  bool keeps_scale = false;           // of the nodes
+  std::optional<Eigen::Vector3d> up;  // the world's frame, unit: nodes turn about it alone
 };
 
 struct PoseGraphResult {
@@ -34,7 +39,7 @@ struct PoseGraphResult {
 
 // Minimises the weighted errors [rotation vector; translation / length; logarithm of the scale] of all edges, in place.
 // At least one node must be fixed. Not usable where an index is out of range, a value not finite, a scale, weight or
-// length not over 0, or the solver failed.
+// length not over 0, `up` not unit, or the solver failed.
 PoseGraphResult optimisePoseGraph(PoseGraph& graph, int iterations);
 
 }  // namespace edgeslam

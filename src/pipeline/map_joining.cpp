@@ -9,6 +9,7 @@
 #include "edgeslam/input_error.h"
 #include "map/map_check.h"
 #include "mapping/local_adjustment.h"
+#include "places/known_frame.h"
 #include "places/loop_closing.h"
 #include "places/relocalisation.h"
 #include "places/world_alignment.h"
@@ -121,7 +122,12 @@ FoundInBoth inBoth(const Sighting& sighting) {
 LoopCorrection correctionOf(const Camera& camera, const Map& both, const std::vector<Sighting>& found,
                             const WorldAlignment& alignment, int from, int to) {
   LoopCorrection correction;
-  correction.join = WorldJoin{from, to, alignment.to_S_from};
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  // in the middle of the cameras that agree
+  for (const std::size_t i : alignment.agreeing) {
+    place += inBoth(found[i]).from_T_camera.translation / static_cast<double>(alignment.agreeing.size());
+  }
+  correction.join =
+      WorldJoin{from, to, putRight(knownFrame(both, from), knownFrame(both, to), alignment.to_S_from, place)};
   for (const std::size_t i : alignment.agreeing) {
     for (const MatchedPoint& match : found[i].points) {
       PointObservation observation;
@@ -147,7 +153,10 @@ int joinBySightings(const Camera& camera, const std::vector<Sighting>& found, Ma
     for (const Sighting& sighting : its) cameras.push_back(inBoth(sighting));
     std::size_t agreeing = 0;
     const std::optional<WorldAlignment> alignment = alignWorlds(cameras, WorldAlignmentOptions(), agreeing);
-    if (agreeing > joining.agreeing && alignment) {
+    const bool is_better = agreeing > joining.agreeing && alignment;
+    if (is_better && contradiction(knownFrame(both, worlds.second), knownFrame(both, worlds.first),
+                                   alignment->to_S_from, KnownFrameOptions())
+                         .empty()) {
       best = correctionOf(camera, both, its, *alignment, worlds.second, worlds.first);
     }
     joining.agreeing = std::max(joining.agreeing, agreeing);
@@ -160,6 +169,8 @@ int joinBySightings(const Camera& camera, const std::vector<Sighting>& found, Ma
 // The map as it was when this keyframe was its latest. Lines say nothing to places.
 Map asOf(const Map& map, KeyframeId latest) {
   Map before;
+  before.inertia = map.inertia;
+  before.wheels = map.wheels;
   for (const Keyframe& keyframe : map.keyframes) {
     if (keyframe.id > latest) break;
     before.keyframes.push_back(keyframe);

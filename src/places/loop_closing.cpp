@@ -82,6 +82,7 @@ LoopOutcome LoopClosing::addKeyframe(const Map& map) {
   for (const LoopCandidate& candidate : detection.candidates) {
     outcome.considered.push_back(judge(map, outcome.current, candidate));
     acceptAgreeingJoin(map, outcome.current, outcome.considered.back());
+    refuseWhereKnownOtherwise(map, outcome.current, outcome.considered.back());
   }
   refuseContradictions(map, outcome.current, outcome.considered);
   const auto best = std::max_element(outcome.considered.begin(), outcome.considered.end(), fewerInliers);
@@ -181,6 +182,17 @@ JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCand
     judged.reason = text;
   }
   return judged;
+}
+
+// What an inertial unit or wheels know, no look-alike may contradict.
+void LoopClosing::refuseWhereKnownOtherwise(const Map& map, KeyframeId current, JudgedLoop& judged) const {
+  if (!judged.accepted) return;
+  const WorldJoin join = joinOf(map, current, judged.keyframe, judged.verification.current_S_candidate);
+  const std::string why =
+      contradiction(knownFrame(map, join.from), knownFrame(map, join.to), join.to_S_from, options_.known_frame);
+  if (why.empty()) return;
+  judged.accepted = false;
+  judged.reason = why;
 }
 
 // A loop between worlds that only descriptors accept, where other keyframes said the same before.

@@ -9,6 +9,7 @@
 
 #include "edges/image_reading.h"
 #include "places/edge_signature.h"
+#include "places/known_frame.h"
 #include "places/loop_correction.h"
 #include "places/loop_detection.h"
 #include "places/loop_verification.h"
@@ -27,6 +28,7 @@ struct LoopClosingOptions {
   double largest_turn_deg = 25;       // a loop that would turn the keyframe by more is no drift [deg]
   double largest_drift = 0.2;         // nor one that would move it by over this share of the way since ...
   double largest_view_turn_deg = 35;  // between two looks at one place that still look alike [deg]
+  KnownFrameOptions known_frame;
   // Between worlds nothing is known beforehand, and their shapes are rough: where the search refuses what descriptors
   // accept, so many other keyframes that say the same are enough ...
   int agreeing_keyframes = 2;
@@ -82,6 +84,7 @@ class LoopClosing {
   double allowedMove(const Map& map, KeyframeId current, KeyframeId earlier) const;
   JudgedLoop judge(const Map& map, KeyframeId current, const LoopCandidate& candidate) const;
   void acceptAgreeingJoin(const Map& map, KeyframeId current, JudgedLoop& judged);
+  void refuseWhereKnownOtherwise(const Map& map, KeyframeId current, JudgedLoop& judged) const;
 
   Camera camera_;
   ImageReading reading_;

@@ -1,12 +1,14 @@
 #include "places/loop_correction.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "adjustment/pose_graph.h"
 #include "adjustment/reprojection.h"
 #include "geometry/camera_mask.h"
 #include "geometry/median.h"
 #include "map/worlds.h"
+#include "places/known_frame.h"
 
 namespace edgeslam {
 namespace {
@@ -24,6 +26,9 @@ PoseGraph graphOf(const Map& map, const std::vector<KeyframeId>& keyframes, Keyf
                   const Similarity& current_S_candidate, double length, const LoopCorrectionOptions& options) {
   PoseGraph graph;
   graph.length = length;
+  const KnownFrame known = knownFrame(map, keyframeOf(map, current).world);
+  graph.keeps_scale = known.metres_a_unit.has_value();
+  graph.up = known.up;
   const auto nodeOf = [&](KeyframeId id) {
     return static_cast<int>(std::lower_bound(keyframes.begin(), keyframes.end(), id) - keyframes.begin());
   };
@@ -44,7 +49,9 @@ PoseGraph graphOf(const Map& map, const std::vector<KeyframeId>& keyframes, Keyf
       graph.edges.push_back({nodeOf(other.id), nodeOf(keyframe.id), similarityOf(from_T_to), 1.0});
     }
   }
-  graph.edges.push_back({nodeOf(current), nodeOf(candidate), current_S_candidate, options.loop_weight});
+  Similarity loop = current_S_candidate;
+  if (graph.keeps_scale) loop = {1, loop.rotation, loop.translation / std::sqrt(loop.scale)};
+  graph.edges.push_back({nodeOf(current), nodeOf(candidate), loop, options.loop_weight});
   return graph;
 }
 
@@ -121,7 +128,11 @@ bool computeCorrection(const Camera& camera, const Map& map, KeyframeId current,
   correction.candidate = candidate;
   correction.world = keyframeOf(map, current).world;
   if (keyframeOf(map, current).world != keyframeOf(map, candidate).world) {
-    correction.join = joinOf(map, current, candidate, loop.current_S_candidate);
+    WorldJoin join = joinOf(map, current, candidate, loop.current_S_candidate);
+    const Keyframe& of_younger = keyframeOf(map, keyframeOf(map, current).world == join.from ? current : candidate);
+    join.to_S_from = putRight(knownFrame(map, join.from), knownFrame(map, join.to), join.to_S_from,
+                              of_younger.world_T_camera.translation);
+    correction.join = join;
   } else {
     const std::vector<KeyframeId> keyframes = keyframesOf(map, keyframeOf(map, current).world);
     PoseGraph graph =

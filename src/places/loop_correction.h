@@ -37,7 +37,8 @@ struct LoopCorrection {
   std::vector<Observation> observations;  // by keyframe, then point
 };
 
-// Where a loop leads from one world to another: the younger one becomes part of the older.
+// Where a loop leads from one world to another: the younger one becomes part of the older. As the loop says, whatever
+// is known of their frames.
 WorldJoin joinOf(const Map& map, KeyframeId current, KeyframeId candidate, const Similarity& current_S_candidate);
 
 // False where the pose graph failed: then the correction is empty.

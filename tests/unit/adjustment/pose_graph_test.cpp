@@ -100,6 +100,45 @@ TEST(PoseGraph, FixedNodesStay) {
   }
 }
 
+TEST(PoseGraph, WhatIsKnownIsKeptWhateverTheLoopSays) {
+  const std::vector<Similarity> truth = circle(30);
+  const Similarity drift{1, rotationExp({0, 0.004, 0}), {0.004, 0.002, 0.003}};  // about y, which is up
+  PoseGraph graph = chain(truth, drift);
+  graph.keeps_scale = true;
+  graph.up = Eigen::Vector3d(0, -1, 0);
+  closeLoop(graph, truth, 10);
+  // The loop is measured wrongly where nothing can be wrong.
+  Similarity& loop = graph.edges.back().from_S_to;
+  loop.rotation = loop.rotation * rotationExp({0.05, 0, 0.03});
+  const PoseGraph before = graph;
+  const double off = (graph.nodes.back().world_S_node.translation - truth.back().translation).norm();
+  ASSERT_GT(off, 0.1);
+  ASSERT_TRUE(optimisePoseGraph(graph, 50).usable);
+  EXPECT_LT((graph.nodes.back().world_S_node.translation - truth.back().translation).norm(), 0.1 * off);
+  double largest_turn = 0;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const Similarity& is = graph.nodes[k].world_S_node;
+    const Similarity& was = before.nodes[k].world_S_node;
+    EXPECT_EQ(is.scale, was.scale);
+    const Eigen::Vector3d up_before = was.rotation.conjugate() * *graph.up;
+    EXPECT_LT((is.rotation.conjugate() * *graph.up - up_before).norm(), 1e-12);
+    largest_turn = std::max(largest_turn, rotationAngle(is.rotation, was.rotation));
+  }
+  EXPECT_GT(largest_turn, 0.05);
+}
+
+TEST(PoseGraph, ScaleAloneMayBeKnown) {
+  const std::vector<Similarity> truth = circle(30);
+  PoseGraph graph = chain(truth, {1, rotationExp({0.002, 0.004, 0.001}), {0.004, 0.002, 0.003}});
+  graph.keeps_scale = true;
+  closeLoop(graph, truth, 10);
+  graph.edges.back().from_S_to.scale = 1.1;
+  const double before = largestError(graph, truth);
+  ASSERT_TRUE(optimisePoseGraph(graph, 50).usable);
+  EXPECT_LT(largestError(graph, truth), 0.4 * before);
+  for (const PoseGraphNode& node : graph.nodes) EXPECT_EQ(node.world_S_node.scale, 1);
+}
+
 TEST(PoseGraph, SameInputSameBits) {
   const std::vector<Similarity> truth = circle(25);
   PoseGraph a = chain(truth, {1.01, rotationExp({0, 0.01, 0.003}), {0.01, 0, 0}});
@@ -117,7 +156,7 @@ TEST(PoseGraph, WhatIsNoGraphIsRefusedAndLeftAlone) {
   const std::vector<Similarity> truth = circle(6);
   const PoseGraph good = chain(truth, {1.01, Eigen::Quaterniond::Identity(), {0.01, 0, 0}});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<PoseGraph> bad(9, good);
+  std::vector<PoseGraph> bad(11, good);
   bad[0].nodes[0].fixed = false;  // nothing holds it
   bad[1].edges[2].to = 6;
   bad[2].edges[2].from = -1;
@@ -127,6 +166,8 @@ TEST(PoseGraph, WhatIsNoGraphIsRefusedAndLeftAlone) {
   bad[6].length = 0;
   bad[7].length = -1;
   bad[8].length = std::numeric_limits<double>::infinity();
+  bad[9].up = Eigen::Vector3d(0, 0, 2);
+  bad[10].up = Eigen::Vector3d(0, nan, 1);
   for (PoseGraph& graph : bad) {
     EXPECT_FALSE(optimisePoseGraph(graph, 10).usable);
     EXPECT_EQ(graph.nodes[5].world_S_node.translation, good.nodes[5].world_S_node.translation);

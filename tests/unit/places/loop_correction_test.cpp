@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "geometry/angles.h"
 #include "mapping/global_adjustment.h"
 #include "places/loop_closing.h"
 #include "unit/places/made_place.h"
@@ -77,6 +78,81 @@ TEST_F(LoopCorrectionTest, TakesTheDriftAway) {
   ASSERT_TRUE(adjustGlobally(camera, {}, {}, map));
   EXPECT_LT(test::positionError(map, *truth), 0.1 * before);
   EXPECT_TRUE(sortedAndWhole(map));
+}
+
+// Where y is down.
+InertialAlignment knownAlignment() {
+  InertialAlignment alignment;
+  alignment.is_known = true;
+  alignment.gravity = {0, standard_gravity, 0};
+  return alignment;
+}
+
+TEST_F(LoopCorrectionTest, WhatInertiaKnowsStays) {
+  Map map = test::makePlace(7, camera, *truth);
+  test::addDrift(0, 0.004, map);
+  map.inertia[0] = knownAlignment();
+  const double before = test::positionError(map, *truth);
+  const LoopCorrection correction = correctionOf(map);
+  for (const auto& [keyframe, move] : correction.new_world_S_world) {
+    EXPECT_EQ(move.scale, 1);
+    EXPECT_LT((move.rotation * Eigen::Vector3d::UnitY() - Eigen::Vector3d::UnitY()).norm(), 1e-9);
+  }
+  applyCorrection(correction, map);
+  EXPECT_LT(test::positionError(map, *truth), 0.5 * before);
+}
+
+TEST_F(LoopCorrectionTest, NoLoopTiltsWhatIsUpright) {
+  const auto reasonsOf = [&](const Map& map) {
+    LoopClosingOptions options;
+    options.detection.recent_keyframes = 8;
+    LoopClosing closing(camera, {}, options);
+    std::string reasons;
+    bool closed = false;
+    for (std::size_t count = 1; count <= map.keyframes.size(); ++count) {
+      Map then = firstKeyframes(map, count);
+      then.inertia = map.inertia;
+      const LoopOutcome outcome = closing.addKeyframe(then);
+      closed = closed || outcome.correction.has_value();
+      for (const JudgedLoop& judged : outcome.considered) reasons += judged.reason + "\n";
+    }
+    return std::pair(closed, reasons);
+  };
+  Map map = *place;
+  const Similarity tilt{1, rotationExp({radians(9), 0, 0}), Eigen::Vector3d::Zero()};
+  for (Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id >= test::keyframes_a_turn / 2) keyframe.world_T_camera = moved(tilt, keyframe.world_T_camera);
+  }
+  EXPECT_TRUE(reasonsOf(map).first) << reasonsOf(map).second;
+  map.inertia[0] = knownAlignment();
+  const auto [closed, reasons] = reasonsOf(map);
+  EXPECT_FALSE(closed);
+  EXPECT_NE(reasons.find("would tilt what is upright by"), std::string::npos) << reasons;
+}
+
+TEST_F(LoopCorrectionTest, WorldsThatAreUprightAreJoinedUpright) {
+  const KeyframeId current = test::keyframes_a_turn + 1;
+  Map map = *place;
+  for (Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id >= test::keyframes_a_turn / 2) keyframe.world = 1;
+  }
+  map.inertia[0] = map.inertia[1] = knownAlignment();
+  LoopVerification loop;
+  const Pose current_T_candidate =
+      keyframeOf(map, current).world_T_camera.inverse() * keyframeOf(map, 1).world_T_camera;
+  loop.current_S_candidate = {1.1, current_T_candidate.rotation * rotationExp({0.03, 0.02, 0.01}),
+                              current_T_candidate.translation};
+  const WorldJoin as_found = joinOf(map, current, 1, loop.current_S_candidate);
+  LoopCorrection correction;
+  ASSERT_TRUE(computeCorrection(camera, map, current, 1, loop, {}, {}, correction));
+  ASSERT_TRUE(correction.join);
+  const Similarity& join = correction.join->to_S_from;
+  EXPECT_EQ(correction.join->from, 1);
+  EXPECT_NEAR(join.scale, 1, 1e-12);
+  EXPECT_LT((join.rotation * Eigen::Vector3d::UnitY() - Eigen::Vector3d::UnitY()).norm(), 1e-9);
+  const Eigen::Vector3d here = keyframeOf(map, current).world_T_camera.translation;
+  EXPECT_LT((join * here - as_found.to_S_from * here).norm(), 1e-9);
+  EXPECT_GT(rotationAngle(as_found.to_S_from.rotation, join.rotation), 0.02);
 }
 
 TEST_F(LoopCorrectionTest, PointsStayAttachedToTheirHosts) {
