@@ -88,18 +88,14 @@ class RollingShutter {
   bool is_tied_;
 };
 
-// The robust cost at a pose and its normal equations, weights frozen at that pose.
-struct NormalEquations {
-  double cost = 0;
-  Matrix6d information = Matrix6d::Zero();
-  Vector6d gradient = Vector6d::Zero();
-};
+// A point behind the camera costs what an error of this whitened norm does; so does anything worse, without pulling.
+constexpr double norm_behind_camera = 1e4;
 
+// Weights frozen at the pose.
 template <typename Shutter>
-NormalEquations linearize(const Shutter& shutter, const PreparedObservations& observations, double huber,
-                          double behind_norm) {
-  const double behind_cost = huberLoss(behind_norm * behind_norm, huber);
-  NormalEquations equations;
+PoseEquations linearize(const Shutter& shutter, const PreparedObservations& observations, double huber) {
+  const double behind_cost = huberLoss(norm_behind_camera * norm_behind_camera, huber);
+  PoseEquations equations;
   for (const PreparedObservation& o : observations) {
     Eigen::Vector2d residual;
     Matrix26d jacobian;
@@ -108,7 +104,7 @@ NormalEquations linearize(const Shutter& shutter, const PreparedObservations& ob
       continue;
     }
     const double squared_norm = residual.squaredNorm();
-    if (!(squared_norm < behind_norm * behind_norm)) {
+    if (!(squared_norm < norm_behind_camera * norm_behind_camera)) {
       equations.cost += behind_cost;
       continue;
     }
@@ -123,7 +119,7 @@ NormalEquations linearize(const Shutter& shutter, const PreparedObservations& ob
 
 // Solves (information + damping * diagonal) x = -gradient in units where the diagonal is 1. False: singular to working
 // precision.
-bool solveDamped(const NormalEquations& equations, double damping, Vector6d& step) {
+bool solveDamped(const PoseEquations& equations, double damping, Vector6d& step) {
   const Vector6d scale = equations.information.diagonal().cwiseSqrt();
   if (!(scale.minCoeff() > 0) || !scale.allFinite()) return false;
   Matrix6d scaled = scale.cwiseInverse().asDiagonal() * equations.information * scale.cwiseInverse().asDiagonal();
@@ -140,7 +136,7 @@ Eigen::Matrix3d informationInCamera(const PositionPrior& prior, const Pose& worl
   return rotation.transpose() * prior.information * rotation;
 }
 
-void addPrior(const PositionPrior& prior, const Pose& world_T_camera, NormalEquations& equations) {
+void addPrior(const PositionPrior& prior, const Pose& world_T_camera, PoseEquations& equations) {
   const Eigen::Vector3d error = world_T_camera.translation - prior.position;
   const Eigen::Vector3d pull = prior.information * error;
   equations.cost += error.dot(pull);
@@ -158,17 +154,15 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
   constexpr double wide_factor = 5;
   constexpr double least_pose_damping = 1e-6;  // holds the directions that nothing measures, without moving the minimum
   constexpr double most_pose_damping = 1e2;
-  // A point behind the camera costs what an error of this whitened norm does; so does anything worse, without pulling.
-  constexpr double norm_behind_camera = 1e4;
 
   double huber = options.huber * wide_factor;
   double damping = least_pose_damping;
   const auto equationsAt = [&](const Pose& at) {
-    NormalEquations equations = linearize(shutterAt(at), observations, huber, norm_behind_camera);
+    PoseEquations equations = linearize(shutterAt(at), observations, huber);
     addPrior(prior, at, equations);
     return equations;
   };
-  NormalEquations equations = equationsAt(pose);
+  PoseEquations equations = equationsAt(pose);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     if (iteration == wide_iterations) {
       huber = options.huber;
@@ -181,7 +175,7 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
       // In units of the pose's own standard deviation, so free of scale.
       small = step.dot(equations.information * step) < 1e-8;
       const Pose candidate = retract(pose, step);
-      const NormalEquations at_candidate = equationsAt(candidate);
+      const PoseEquations at_candidate = equationsAt(candidate);
       accepted = at_candidate.cost <= equations.cost;
       if (accepted) {
         pose = candidate;
@@ -281,6 +275,15 @@ PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, 
   }
   result.twist = twistOf(motion, result.world_T_camera);
   return result;
+}
+
+PoseEquations poseEquations(const Camera& camera, const MovingCamera& moving, const PoseObservations& observations,
+                            const PoseOptions& options) {
+  const PreparedObservations prepared = prepare(camera, observations, std::pmr::get_default_resource());
+  RowMotion motion;
+  motion.before = moving.twist;
+  if (camera.readout_s == 0) return linearize(GlobalShutter(camera, moving.world_T_camera), prepared, options.huber);
+  return linearize(RollingShutter(camera, motion, moving.world_T_camera), prepared, options.huber);
 }
 
 Matrix6d poseInformation(const Camera& camera, const Pose& world_T_camera, const PoseObservations& observations) {

@@ -74,6 +74,18 @@ PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, 
                       const PoseOptions& options, std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
                       const RowMotion& motion = {}, const PositionPrior& prior = {});
 
+// The robust cost of a pose, and its derivatives by the right-hand update: half of the gradient, and Gauss' and
+// Newton's half of the second derivative.
+struct PoseEquations {
+  double cost = 0;
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+};
+
+// What is measured says of a pose. The rows are read while the camera moves by its twist.
+PoseEquations poseEquations(const Camera& camera, const MovingCamera& moving, const PoseObservations& observations,
+                            const PoseOptions& options);
+
 // Inverse covariance of the right-hand update [translation; rotation] that the observations' standard deviations give a
 // camera there, whatever the residuals are.
 Matrix6d poseInformation(const Camera& camera, const Pose& world_T_camera, const PoseObservations& observations);

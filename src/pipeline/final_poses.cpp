@@ -1,9 +1,13 @@
 #include "pipeline/final_poses.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
+#include "adjustment/motion_smoothing.h"
 #include "geometry/median.h"
+#include "map/worlds.h"
 
 namespace edgeslam {
 namespace {
@@ -13,7 +17,13 @@ constexpr double least_share = 0.5;  // ... of those that are in the map
 // Standard deviation of the position that a frame was carried to, share of the scene's distance. What errs together
 // makes measured positions err several times as far as they say: this is small beside what is carried to a wrong place.
 constexpr double carried_sigma = 0.002;
-constexpr double longest_step_s = 0.2;        // between frames that tell how the camera moved
+constexpr double longest_step_s = 0.2;  // between frames that tell how the camera moved
+constexpr int smoothing_iterations = 10;
+// Between keyframes the mean speed changes less than the speed does: of frames, so many times as much is presumed ...
+constexpr double walk_of_frames = 3;
+constexpr std::ptrdiff_t walks_around = 8;  // ... as in the median of the nearest so many keyframes, but at least ...
+constexpr double least_walk = 0.005;        // ... this: [rad/s], and share of the scene's distance
+constexpr std::size_t fewest_walks = 3;
 constexpr int rounds_of_rolling_shutter = 2;  // the frames' poses tell the motion, which tells their poses
 
 PoseObservations observationsOf(const Camera& camera, const Map& map, int world, const SeenPoints& seen,
@@ -42,17 +52,100 @@ PositionPrior whereItWasCarried(const PoseObservations& observations, const Eige
   return {position, Eigen::Matrix3d::Identity() / (sigma * sigma)};
 }
 
+double secondsBetween(const FrameRecord& a, const FrameRecord& b) {
+  return 1e-9 * static_cast<double>(b.time_ns - a.time_ns);
+}
+
 // As the frames before and after it in the same world tell it.
 Twist motionAt(const std::deque<FrameRecord>& frames, std::size_t place) {
   const FrameRecord& frame = frames[place];
   const auto tells = [&](const FrameRecord& other) {
-    const double seconds = 1e-9 * static_cast<double>(std::abs(other.time_ns - frame.time_ns));
-    return other.has_final_pose && other.final_world == frame.final_world && seconds <= longest_step_s;
+    return other.has_final_pose && other.final_world == frame.final_world &&
+           std::abs(secondsBetween(frame, other)) <= longest_step_s;
   };
   const FrameRecord& before = place > 0 && tells(frames[place - 1]) ? frames[place - 1] : frame;
   const FrameRecord& after = place + 1 < frames.size() && tells(frames[place + 1]) ? frames[place + 1] : frame;
-  const double seconds = 1e-9 * static_cast<double>(after.time_ns - before.time_ns);
+  const double seconds = secondsBetween(before, after);
   return seconds > 0 ? twistBetween(before.final_world_T_camera, after.final_world_T_camera, seconds) : Twist::Zero();
+}
+
+// Frames in a row with final poses in one world, without gaps: from `first` until before `end`.
+struct Row {
+  std::size_t first = 0, end = 0;
+};
+
+std::vector<Row> rowsOf(const std::deque<FrameRecord>& frames) {
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!frames[i].has_final_pose) continue;
+    const bool goes_on = !rows.empty() && rows.back().end == i && frames[i].final_world == frames[i - 1].final_world &&
+                         secondsBetween(frames[i - 1], frames[i]) <= longest_step_s;
+    if (!goes_on) rows.push_back({i, i});
+    rows.back().end = i + 1;
+  }
+  return rows;
+}
+
+struct TimedWalk {
+  double time_s = 0;
+  SpeedWalk walk;
+};
+
+// How much the speed changed at each keyframe, in the order of time.
+std::vector<TimedWalk> walksAtKeyframes(const std::vector<SmoothedFrame>& row) {
+  std::vector<SmoothedFrame> keyframes;
+  std::copy_if(row.begin(), row.end(), std::back_inserter(keyframes),
+               [](const SmoothedFrame& frame) { return frame.is_fixed; });
+  std::vector<TimedWalk> walks;
+  for (std::size_t k = 2; k < keyframes.size(); ++k) {
+    keyframes[k - 1].walk = {1, 1};
+    const SpeedChange change = speedChange(keyframes[k - 2], keyframes[k - 1], keyframes[k]);
+    const auto each_axis = [](const Eigen::Vector3d& all) { return all.norm() / std::sqrt(3.0); };
+    walks.push_back(
+        {keyframes[k - 1].time_s, {each_axis(change.residual.head<3>()), each_axis(change.residual.tail<3>())}});
+  }
+  return walks;
+}
+
+SpeedWalk walkAt(double time_s, const std::vector<TimedWalk>& walks, const SpeedWalk& least) {
+  const auto isBefore = [](const TimedWalk& walk, double time) { return walk.time_s < time; };
+  const auto here = std::lower_bound(walks.begin(), walks.end(), time_s, isBefore);
+  const auto first = here - std::min(walks_around / 2, here - walks.begin());
+  const auto last = first + std::min(walks_around, walks.end() - first);
+  std::vector<double> positions, rotations;
+  for (auto walk = first; walk != last; ++walk) {
+    positions.push_back(walk->walk.position);
+    rotations.push_back(walk->walk.rotation);
+  }
+  return {std::max(least.position, walk_of_frames * upperMedian(positions)),
+          std::max(least.rotation, walk_of_frames * upperMedian(rotations))};
+}
+
+void smoothRow(const Camera& camera, const Map& map, const PoseOptions& options, const Row& row, SeenRecord& seen,
+               std::deque<FrameRecord>& frames) {
+  std::vector<SmoothedFrame> smoothed;
+  std::vector<Twist> twists;
+  for (std::size_t i = row.first; i < row.end; ++i) {
+    const FrameRecord& frame = frames[i];
+    smoothed.push_back(
+        {secondsBetween(frames[row.first], frame), frame.final_world_T_camera, SpeedWalk(), frame.is_keyframe});
+    twists.push_back(motionAt(frames, i));
+  }
+  const std::vector<TimedWalk> walks = walksAtKeyframes(smoothed);
+  if (walks.size() < fewest_walks) return;
+  const int world = frames[row.first].final_world;
+  const double distance = sceneDistance(map, keyframeOf(map, firstKeyframeOf(map, world)));
+  for (SmoothedFrame& frame : smoothed) frame.walk = walkAt(frame.time_s, walks, {least_walk * distance, least_walk});
+  const std::vector<SmoothedFrame> start = smoothed;
+  const FrameEquations measured = [&](std::size_t i, const Pose& world_T_camera) {
+    const SeenPoints its = seen.of(row.first + i);
+    return poseEquations(camera, {world_T_camera, twists[i]},
+                         observationsOf(camera, map, world, its, start[i].world_T_camera), options);
+  };
+  smoothMotion(measured, smoothing_iterations, smoothed);
+  for (std::size_t i = row.first; i < row.end; ++i) {
+    frames[i].final_world_T_camera = smoothed[i - row.first].world_T_camera;
+  }
 }
 
 }  // namespace
@@ -87,6 +180,11 @@ void locateFramesAnew(const Camera& camera, const Map& map, const PoseOptions& o
       if (poses[i]) frames[i].final_world_T_camera = *poses[i];
     }
   }
+}
+
+void smoothFrames(const Camera& camera, const Map& map, const PoseOptions& options, SeenRecord& seen,
+                  std::deque<FrameRecord>& frames) {
+  for (const Row& row : rowsOf(frames)) smoothRow(camera, map, options, row, seen, frames);
 }
 
 }  // namespace edgeslam

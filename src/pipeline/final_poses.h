@@ -1,6 +1,7 @@
 // The final poses of frames (design, section 5: final poses). A frame is located in the map and with the camera as they
 // are known by then, and carried by its keyframe since. When the run ends it is located once more, from what was
-// measured in it, in the map as it came to be and with the camera as it was found.
+// measured in it, in the map as it came to be and with the camera as it was found; and all of them together, since a
+// camera moves smoothly from frame to frame.
 #pragma once
 
 #include <deque>
@@ -18,8 +19,13 @@ namespace edgeslam {
 std::optional<Pose> locateAnew(const Camera& camera, const Map& map, int world, const SeenPoints& seen,
                                const MovingCamera& carried, const PoseOptions& options);
 
-// All that have a final pose and are no keyframes. `seen`: by them.
+// All that have a final pose and are no keyframes, each by itself. `seen`: by them.
 void locateFramesAnew(const Camera& camera, const Map& map, const PoseOptions& options, SeenRecord& seen,
                       std::deque<FrameRecord>& frames);
+
+// Then together, between keyframes, whose poses stay. How much the speed changes from frame to frame is what it did
+// from keyframe to keyframe around. Runs of frames with fewer than five keyframes stay as they are.
+void smoothFrames(const Camera& camera, const Map& map, const PoseOptions& options, SeenRecord& seen,
+                  std::deque<FrameRecord>& frames);
 
 }  // namespace edgeslam

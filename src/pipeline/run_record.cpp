@@ -129,6 +129,7 @@ void RunRecord::giveMap(const Mapper& mapper) {
     if (place < result_.frames.size()) result_.frames[place].is_keyframe = true;
   }
   locateFramesAnew(mapper.camera(), map, pose_, seen_, result_.frames);
+  smoothFrames(mapper.camera(), map, pose_, seen_, result_.frames);
   result_.camera = mapper.camera();
   result_.found = map.found;
   result_.keyframes = keyframeRecords(map, first_keyframe_);

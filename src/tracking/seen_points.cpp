@@ -30,7 +30,7 @@ void pack(const Camera& camera, const std::vector<Track>& tracks, std::size_t mo
     packed.normal_x = Eigen::half(track.normal.x());
     packed.normal_y = Eigen::half(track.normal.y());
     packed.sigma_normal = Eigen::half(track.sigma_normal);
-    packed.sigma_tangent = Eigen::half(track.sigma_tangent);
+    packed.sigma_tangent = Eigen::half(sigmaAlong(track));
   }
 }
 

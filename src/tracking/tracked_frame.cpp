@@ -1,12 +1,6 @@
 #include "tracking/tracked_frame.h"
 
 namespace edgeslam {
-namespace {
-
-constexpr double unknown_along = 1000;  // standard deviation [px]
-
-}  // namespace
-
 void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole& role, TrackedFrame& description) {
   description.frame_index = frame.images->frame_index;
   description.time_ns = frame.images->time_ns;
@@ -26,8 +20,7 @@ void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole&
   for (const Track& track : frame.tracks) {
     const int straight_edge = frame.straight_edges.empty() ? -1 : track.straight_edge;
     Measurement measurement = measurementOf(track);
-    // Along a straight edge nothing is known, whatever its patch seems to say.
-    if (straight_edge >= 0 && !track.corner) measurement.sigma_tangent = unknown_along;
+    if (straight_edge >= 0) measurement.sigma_tangent = sigmaAlong(track);
     const Ray ray = rayOfRow(camera, frame.twist, measurement.pixel.y(), bearing(camera, measurement.pixel));
     description.observations.push_back(
         {track.id, measurement, ray.direction, track.corner, track.chain, track.order, straight_edge});

@@ -222,6 +222,30 @@ TEST(PoseAdjustment, InformationIsThatOfTheMeasurementsCovariance) {
   }
 }
 
+TEST(PoseAdjustment, EquationsHaveTheCostsDerivatives) {
+  Random random(9);
+  TrialOptions noisy;
+  noisy.noise = 2;  // some beyond Huber's threshold
+  for (const double readout_s : {0.0, 0.02}) {
+    Trial trial = makeTrial(random, noisy);
+    trial.camera.readout_s = readout_s;
+    Twist twist;
+    twist << 0.3, -0.2, 0.1, 0.4, 0.2, -0.3;
+    const auto equationsAt = [&](const Vector6d& update) {
+      return poseEquations(trial.camera, {retract(trial.truth, update), twist}, trial.observations, {});
+    };
+    const PoseEquations equations = equationsAt(Vector6d::Zero());
+    constexpr double step = 1e-6;
+    for (int axis = 0; axis < 6; ++axis) {
+      const Vector6d moved = step * Vector6d::Unit(axis);
+      const double numeric = (equationsAt(moved).cost - equationsAt(-moved).cost) / (2 * step);
+      const double scale = std::sqrt(equations.cost * equations.information(axis, axis));
+      EXPECT_NEAR(numeric, 2 * equations.gradient[axis], 1e-3 * scale) << axis;
+    }
+    EXPECT_GT(equations.information.diagonal().minCoeff(), 0);
+  }
+}
+
 TEST(PoseAdjustment, CovarianceCountsUncertainDepths) {
   Random random(6);
   constexpr int trials = 300;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "unit/mapping/landmark_walk.h"
 
 namespace edgeslam {
@@ -127,6 +129,47 @@ TEST(FinalPoses, TheMotionOfARollingShutterIsThatOfTheNeighbouringFrames) {
   EXPECT_LT(error, 0.3 * error_before);
   EXPECT_EQ(frames[2].final_world_T_camera.translation, before[2].final_world_T_camera.translation)
       << "a keyframe has its pose by the adjustment";
+}
+
+// Of a camera that saw level edges only, so that it may have slid along them; every eighth is a keyframe.
+TEST(FinalPoses, FramesBetweenKeyframesFollowTheMotionWhereEdgesTellNothing) {
+  const test::Walk walk = walkedMap();
+  const Camera camera = test::Walk::camera();
+  Twist twist;
+  twist << 0.2, -0.05, 0.1, 0.02, 0.05, -0.04;
+  std::vector<Pose> truth;
+  SeenRecord seen;
+  std::deque<FrameRecord> frames;
+  for (int i = 0; i < 57; ++i) {
+    const double seconds = 0.033 * i;
+    const Twist turned = twist + 0.05 * std::sin(2 * seconds) * Twist::Ones();
+    truth.push_back(besideKeyframe(walk) * movedFor(turned, seconds));
+    FrameRecord& frame = frames.emplace_back();
+    frame.time_ns = std::int64_t{33'000'000} * i;
+    frame.has_final_pose = true;
+    frame.final_world = 0;
+    frame.is_keyframe = i % 8 == 0;
+    seen.add(seenFrom(walk, camera, truth.back(), {0, 1}, 1000));
+    frame.final_world_T_camera =
+        frame.is_keyframe ? truth.back() : movedBy(truth.back(), i % 2 == 0 ? 0.03 : -0.05, 0, 0);
+  }
+  const auto meanError = [&] {
+    double sum = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) sum += distance(frames[i].final_world_T_camera, truth[i]);
+    return sum / static_cast<double>(frames.size());
+  };
+  const double before = meanError();
+  std::deque<FrameRecord> few(frames.begin(), frames.begin() + 20);
+  smoothFrames(camera, walk.map, {}, seen, frames);
+  EXPECT_LT(meanError(), 0.15 * before);
+  EXPECT_EQ(frames[8].final_world_T_camera.translation, truth[8].translation);
+
+  const std::deque<FrameRecord> untouched = few;
+  smoothFrames(camera, walk.map, {}, seen, few);
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    EXPECT_EQ(few[i].final_world_T_camera.translation, untouched[i].final_world_T_camera.translation)
+        << "three keyframes do not tell how the camera moves";
+  }
 }
 
 }  // namespace
