@@ -24,6 +24,7 @@ constexpr double walk_of_frames = 3;
 constexpr std::ptrdiff_t walks_around = 8;  // ... as in the median of the nearest so many keyframes, but at least ...
 constexpr double least_walk = 0.005;        // ... this: [rad/s], and share of the scene's distance
 constexpr std::size_t fewest_walks = 3;
+constexpr std::size_t enough_frames = 500;    // at once: memory does not grow with the run
 constexpr int rounds_of_rolling_shutter = 2;  // the frames' poses tell the motion, which tells their poses
 
 PoseObservations observationsOf(const Camera& camera, const Map& map, int world, const SeenPoints& seen,
@@ -69,7 +70,8 @@ Twist motionAt(const std::deque<FrameRecord>& frames, std::size_t place) {
   return seconds > 0 ? twistBetween(before.final_world_T_camera, after.final_world_T_camera, seconds) : Twist::Zero();
 }
 
-// Frames in a row with final poses in one world, without gaps: from `first` until before `end`.
+// Frames in a row with final poses in one world, without gaps: from `first` until before `end`. Where a row is long
+// enough it ends with a keyframe, and the next one begins with it.
 struct Row {
   std::size_t first = 0, end = 0;
 };
@@ -82,6 +84,7 @@ std::vector<Row> rowsOf(const std::deque<FrameRecord>& frames) {
                          secondsBetween(frames[i - 1], frames[i]) <= longest_step_s;
     if (!goes_on) rows.push_back({i, i});
     rows.back().end = i + 1;
+    if (frames[i].is_keyframe && i - rows.back().first >= enough_frames) rows.push_back({i, i + 1});
   }
   return rows;
 }

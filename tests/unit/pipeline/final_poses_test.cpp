@@ -131,28 +131,33 @@ TEST(FinalPoses, TheMotionOfARollingShutterIsThatOfTheNeighbouringFrames) {
       << "a keyframe has its pose by the adjustment";
 }
 
-// Of a camera that saw level edges only, so that it may have slid along them; every eighth is a keyframe.
-TEST(FinalPoses, FramesBetweenKeyframesFollowTheMotionWhereEdgesTellNothing) {
-  const test::Walk walk = walkedMap();
+// Of a camera that goes to and fro before level edges only, so that it may have slid along them; every eighth is a
+// keyframe.
+void slideAlongEdges(const test::Walk& walk, int count, std::vector<Pose>& truth, SeenRecord& seen,
+                     std::deque<FrameRecord>& frames) {
   const Camera camera = test::Walk::camera();
-  Twist twist;
-  twist << 0.2, -0.05, 0.1, 0.02, 0.05, -0.04;
-  std::vector<Pose> truth;
-  SeenRecord seen;
-  std::deque<FrameRecord> frames;
-  for (int i = 0; i < 57; ++i) {
-    const double seconds = 0.033 * i;
-    const Twist turned = twist + 0.05 * std::sin(2 * seconds) * Twist::Ones();
-    truth.push_back(besideKeyframe(walk) * movedFor(turned, seconds));
+  Twist way;
+  way << 0.2, -0.05, 0.1, 0.02, 0.05, -0.04;
+  for (int i = 0; i < count; ++i) {
+    truth.push_back(besideKeyframe(walk) * movedFor(way, std::sin(0.033 * i)));
     FrameRecord& frame = frames.emplace_back();
     frame.time_ns = std::int64_t{33'000'000} * i;
     frame.has_final_pose = true;
     frame.final_world = 0;
     frame.is_keyframe = i % 8 == 0;
     seen.add(seenFrom(walk, camera, truth.back(), {0, 1}, 1000));
-    frame.final_world_T_camera =
-        frame.is_keyframe ? truth.back() : movedBy(truth.back(), i % 2 == 0 ? 0.03 : -0.05, 0, 0);
+    const Pose slid = movedBy(truth.back(), i % 2 == 0 ? 0.03 : -0.05, 0, 0);
+    frame.final_world_T_camera = frame.is_keyframe ? truth.back() : slid;
   }
+}
+
+TEST(FinalPoses, FramesBetweenKeyframesFollowTheMotionWhereEdgesTellNothing) {
+  const test::Walk walk = walkedMap();
+  const Camera camera = test::Walk::camera();
+  std::vector<Pose> truth;
+  SeenRecord seen;
+  std::deque<FrameRecord> frames;
+  slideAlongEdges(walk, 57, truth, seen, frames);
   const auto meanError = [&] {
     double sum = 0;
     for (std::size_t i = 0; i < frames.size(); ++i) sum += distance(frames[i].final_world_T_camera, truth[i]);
@@ -169,6 +174,18 @@ TEST(FinalPoses, FramesBetweenKeyframesFollowTheMotionWhereEdgesTellNothing) {
   for (std::size_t i = 0; i < few.size(); ++i) {
     EXPECT_EQ(few[i].final_world_T_camera.translation, untouched[i].final_world_T_camera.translation)
         << "three keyframes do not tell how the camera moves";
+  }
+}
+
+TEST(FinalPoses, ALongRunIsSmoothedInPieces) {
+  const test::Walk walk = walkedMap();
+  std::vector<Pose> truth;
+  SeenRecord seen;
+  std::deque<FrameRecord> frames;
+  slideAlongEdges(walk, 1100, truth, seen, frames);
+  smoothFrames(test::Walk::camera(), walk.map, {}, seen, frames);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_LT(distance(frames[i].final_world_T_camera, truth[i]), 0.015) << i;
   }
 }
 
