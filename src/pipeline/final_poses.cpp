@@ -70,21 +70,33 @@ Twist motionAt(const std::deque<FrameRecord>& frames, std::size_t place) {
   return seconds > 0 ? twistBetween(before.final_world_T_camera, after.final_world_T_camera, seconds) : Twist::Zero();
 }
 
-// Frames in a row with final poses in one world, without gaps: from `first` until before `end`. Where a row is long
-// enough it ends with a keyframe, and the next one begins with it.
+// Whether it has its pose from the map, and not from inertia or wheels alone.
+bool showsTheMap(const Map& map, int world, const SeenPoints& seen) {
+  int shown = 0;
+  for (std::size_t i = 0; i < seen.points.size() && shown < fewest_points; ++i) {
+    const auto found = map.points.find(seenPoint(seen, i).point);
+    if (found != map.points.end() && map.keyframes[found->second.host].world == world) ++shown;
+  }
+  return shown == fewest_points;
+}
+
+// Frames in a row that show one world, without gaps: from `first` until before `end`. Where a row is long enough it
+// ends with a keyframe, and the next one begins with it.
 struct Row {
   std::size_t first = 0, end = 0;
 };
 
-std::vector<Row> rowsOf(const std::deque<FrameRecord>& frames) {
+std::vector<Row> rowsOf(const Map& map, SeenRecord& seen, const std::deque<FrameRecord>& frames) {
   std::vector<Row> rows;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (!frames[i].has_final_pose) continue;
-    const bool goes_on = !rows.empty() && rows.back().end == i && frames[i].final_world == frames[i - 1].final_world &&
-                         secondsBetween(frames[i - 1], frames[i]) <= longest_step_s;
+    const FrameRecord& frame = frames[i];
+    if (!frame.has_final_pose || !(frame.is_keyframe || showsTheMap(map, frame.final_world, seen.of(i)))) continue;
+    const double step_s = i > 0 ? secondsBetween(frames[i - 1], frame) : 0;
+    const bool goes_on = !rows.empty() && rows.back().end == i && frame.final_world == frames[i - 1].final_world &&
+                         step_s > 0 && step_s <= longest_step_s;
     if (!goes_on) rows.push_back({i, i});
     rows.back().end = i + 1;
-    if (frames[i].is_keyframe && i - rows.back().first >= enough_frames) rows.push_back({i, i + 1});
+    if (frame.is_keyframe && i - rows.back().first >= enough_frames) rows.push_back({i, i + 1});
   }
   return rows;
 }
@@ -135,9 +147,10 @@ void smoothRow(const Camera& camera, const Map& map, const PoseOptions& options,
     twists.push_back(motionAt(frames, i));
   }
   const std::vector<TimedWalk> walks = walksAtKeyframes(smoothed);
-  if (walks.size() < fewest_walks) return;
   const int world = frames[row.first].final_world;
-  const double distance = sceneDistance(map, keyframeOf(map, firstKeyframeOf(map, world)));
+  const KeyframeId first = firstKeyframeOf(map, world);  // none of a world that had to go
+  const double distance = first < 0 ? 0 : sceneDistance(map, keyframeOf(map, first));
+  if (walks.size() < fewest_walks || !(distance > 0)) return;
   for (SmoothedFrame& frame : smoothed) frame.walk = walkAt(frame.time_s, walks, {least_walk * distance, least_walk});
   const std::vector<SmoothedFrame> start = smoothed;
   const FrameEquations measured = [&](std::size_t i, const Pose& world_T_camera) {
@@ -187,7 +200,7 @@ void locateFramesAnew(const Camera& camera, const Map& map, const PoseOptions& o
 
 void smoothFrames(const Camera& camera, const Map& map, const PoseOptions& options, SeenRecord& seen,
                   std::deque<FrameRecord>& frames) {
-  for (const Row& row : rowsOf(frames)) smoothRow(camera, map, options, row, seen, frames);
+  for (const Row& row : rowsOf(map, seen, frames)) smoothRow(camera, map, options, row, seen, frames);
 }
 
 }  // namespace edgeslam

@@ -24,7 +24,8 @@ void locateFramesAnew(const Camera& camera, const Map& map, const PoseOptions& o
                       std::deque<FrameRecord>& frames);
 
 // Then together, between keyframes, whose poses stay. How much the speed changes from frame to frame is what it did
-// from keyframe to keyframe around. Runs of frames with fewer than five keyframes stay as they are.
+// from keyframe to keyframe around. Runs of frames with fewer than five keyframes stay as they are, and so do frames
+// that show next to nothing of the map: inertia or wheels told their poses.
 void smoothFrames(const Camera& camera, const Map& map, const PoseOptions& options, SeenRecord& seen,
                   std::deque<FrameRecord>& frames);
 

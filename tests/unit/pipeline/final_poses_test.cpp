@@ -189,5 +189,22 @@ TEST(FinalPoses, ALongRunIsSmoothedInPieces) {
   }
 }
 
+TEST(FinalPoses, FramesThatShowNothingOfTheMapStayWhereTheWheelsTookThem) {
+  const test::Walk walk = walkedMap();
+  std::vector<Pose> truth;
+  SeenRecord seen, with_gap;
+  std::deque<FrameRecord> frames;
+  slideAlongEdges(walk, 97, truth, seen, frames);
+  const auto isBlind = [](std::size_t i) { return i > 40 && i < 48; };
+  for (std::size_t i = 0; i < frames.size(); ++i) with_gap.add(isBlind(i) ? SeenPoints() : seen.of(i));
+  const std::deque<FrameRecord> before = frames;
+  smoothFrames(test::Walk::camera(), walk.map, {}, with_gap, frames);
+  for (std::size_t i = 41; i < 48; ++i) {
+    EXPECT_EQ(frames[i].final_world_T_camera.translation, before[i].final_world_T_camera.translation) << i;
+  }
+  EXPECT_LT(distance(frames[20].final_world_T_camera, truth[20]), 0.015);
+  EXPECT_LT(distance(frames[70].final_world_T_camera, truth[70]), 0.015);
+}
+
 }  // namespace
 }  // namespace edgeslam
