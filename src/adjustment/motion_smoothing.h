@@ -4,7 +4,6 @@
 // frame as no camera moves.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <vector>
 

@@ -153,10 +153,11 @@ int joinBySightings(const Camera& camera, const std::vector<Sighting>& found, Ma
     for (const Sighting& sighting : its) cameras.push_back(inBoth(sighting));
     std::size_t agreeing = 0;
     const std::optional<WorldAlignment> alignment = alignWorlds(cameras, WorldAlignmentOptions(), agreeing);
-    const bool is_better = agreeing > joining.agreeing && alignment;
-    if (is_better && contradiction(knownFrame(both, worlds.second), knownFrame(both, worlds.first),
-                                   alignment->to_S_from, KnownFrameOptions())
-                         .empty()) {
+    const bool cannot_be = alignment && !contradiction(knownFrame(both, worlds.second), knownFrame(both, worlds.first),
+                                                       alignment->to_S_from, KnownFrameOptions())
+                                             .empty();
+    if (cannot_be) continue;
+    if (agreeing > joining.agreeing && alignment) {
       best = correctionOf(camera, both, its, *alignment, worlds.second, worlds.first);
     }
     joining.agreeing = std::max(joining.agreeing, agreeing);
