@@ -123,7 +123,7 @@ SpeedChange speedChange(const SmoothedFrame& before, const SmoothedFrame& at, co
 
 void smoothMotion(const FrameEquations& equations, int most_iterations, std::vector<SmoothedFrame>& frames) {
   constexpr double least_damping = 1e-6, most_damping = 1e3;
-  constexpr double hardly = 1e-4;  // share of the cost, that a step gains at the end
+  constexpr double hardly = 1e-4;  // share of the cost: with a step that gains less it is done
   double damping = least_damping;
   Equations here = linearize(equations, frames);
   for (int iteration = 0; iteration < most_iterations && damping <= most_damping; ++iteration) {

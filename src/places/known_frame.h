@@ -21,7 +21,7 @@ KnownFrame knownFrame(const Map& map, int world);
 
 struct KnownFrameOptions {
   double largest_tilt_deg = 5;  // of the vertical of one against that of the other [deg]
-  double largest_scale = 1.5;   // likewise of their units, or its inverse: of depths at one place
+  double largest_scale = 1.5;   // by which known lengths change, or its inverse: a loop's depths are rough
 };
 
 // Why `to_S_from` cannot be, in words: it tilts what is known to be upright, or changes known lengths. Empty where it

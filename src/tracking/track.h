@@ -16,7 +16,7 @@ struct Track {
   float sigma_tangent = 1000;  // [px]
   int chain = -1;              // of the edge on which it was chosen
   int order = 0;               // place along that chain
-  int straight_edge = -1;      // of the latest keyframe (tracking/edge_tracks.h)
+  int straight_edge = -1;      // of the latest frame that mapping got to see (tracking/edge_tracks.h)
   KeyframeId keyframe = -1;    // the keyframe whose patch it is compared with
   std::shared_ptr<const FrameImages> keyframe_images;
   Eigen::Vector2f keyframe_pixel = Eigen::Vector2f::Zero();       // its pixel there [px]
