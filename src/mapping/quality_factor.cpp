@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/squared.h"
+
 namespace edgeslam {
 namespace {
 
@@ -13,18 +15,29 @@ bool hasDepth(const QualityPoint& p) { return p.inverse_depth > 0 && std::isfini
 
 bool agree(double a, double b, double ratio) { return std::abs(a - b) <= ratio * std::max(std::abs(a), std::abs(b)); }
 
+class Neighbourhood {
+ public:
+  explicit Neighbourhood(const QualityOptions& options)
+      : squared_px_(squared(options.neighbour_px)),
+        squared_chord_(squared(2 * std::sin(0.5 * options.neighbour_deg * M_PI / 180))) {}
+
+  bool hasBoth(const QualityPoint& a, const QualityPoint& b) const {
+    return (a.pixel - b.pixel).squaredNorm() <= squared_px_ && (a.bearing - b.bearing).squaredNorm() <= squared_chord_;
+  }
+
+ private:
+  double squared_px_, squared_chord_;  // the chord is that between unit bearings
+};
+
 // Three successive points of a chain that lie on a straight line in the image.
 bool isStraightPiece(const QualityPoint& a, const QualityPoint& b, const QualityPoint& c,
-                     const QualityOptions& options) {
+                     const Neighbourhood& neighbourhood, double straight_px) {
   if (a.chain < 0 || a.chain != b.chain || b.chain != c.chain) return false;
   const Eigen::Vector2d chord = c.pixel - a.pixel;
   const double length = chord.norm();
-  if (length < 2 || (b.pixel - a.pixel).norm() > options.neighbour_px ||
-      (c.pixel - b.pixel).norm() > options.neighbour_px) {
-    return false;
-  }
+  if (length < 2 || !neighbourhood.hasBoth(a, b) || !neighbourhood.hasBoth(b, c)) return false;
   const double off = std::abs(chord.x() * (b.pixel - a.pixel).y() - chord.y() * (b.pixel - a.pixel).x()) / length;
-  return off < options.straight_px;
+  return off < straight_px;
 }
 
 bool keepsOrder(const QualityPoint& a, const QualityPoint& b, const QualityPoint& c, const QualityOptions& options) {
@@ -41,9 +54,10 @@ QualityFactor qualityFactor(std::vector<QualityPoint> points, const QualityOptio
   std::stable_sort(points.begin(), points.end(), [](const QualityPoint& a, const QualityPoint& b) {
     return a.chain != b.chain ? a.chain < b.chain : a.order < b.order;
   });
+  const Neighbourhood neighbourhood(options);
   QualityFactor quality;
   for (std::size_t i = 0; i + 2 < points.size(); ++i) {
-    if (!isStraightPiece(points[i], points[i + 1], points[i + 2], options)) continue;
+    if (!isStraightPiece(points[i], points[i + 1], points[i + 2], neighbourhood, options.straight_px)) continue;
     ++quality.pieces;
     quality.kept += keepsOrder(points[i], points[i + 1], points[i + 2], options);
   }
@@ -51,7 +65,7 @@ QualityFactor qualityFactor(std::vector<QualityPoint> points, const QualityOptio
   // wrong poses tear the structure apart.
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = i + 1; j < points.size(); ++j) {
-      if ((points[i].pixel - points[j].pixel).squaredNorm() > options.neighbour_px * options.neighbour_px) continue;
+      if (!neighbourhood.hasBoth(points[i], points[j])) continue;
       if (points[i].chain == points[j].chain) continue;
       if (std::abs(points[i].normal.dot(points[j].normal)) > 0.85) continue;
       ++quality.pieces;

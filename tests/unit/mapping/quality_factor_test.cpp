@@ -60,6 +60,20 @@ TEST(QualityFactor, TheOrderOfThePointsGivenDoesNotMatter) {
   EXPECT_EQ(straight.kept, reversed.kept);
 }
 
+TEST(QualityFactor, ASmallerImageOfTheSameIsJudgedAlike) {
+  std::vector<QualityPoint> points = zigZag();
+  test::Random random(4);
+  for (QualityPoint& point : points) point.inverse_depth *= 1 + test::gaussian(random, 0.05);
+  QualityOptions options;
+  options.neighbour_deg = 0.9 * options.neighbour_px / undistortedCamera().fx * 180 / M_PI;
+  const QualityFactor large = qualityFactor(points, options);
+  for (QualityPoint& point : points) point.pixel *= 0.5;
+  const QualityFactor small = qualityFactor(points, options);
+  EXPECT_GT(large.pieces, large.kept);
+  EXPECT_EQ(small.pieces, large.pieces);
+  EXPECT_EQ(small.kept, large.kept);
+}
+
 TEST(QualityFactor, SmallErrorsOfDepthDoNotHarm) {
   std::vector<QualityPoint> points = zigZag();
   test::Random random(1);
