@@ -130,25 +130,18 @@ bool solveDamped(const PoseEquations& equations, double damping, Vector6d& step)
   return step.allFinite();
 }
 
-// What is known of the position beforehand, as a camera with this rotation sees it.
-Eigen::Matrix3d informationInCamera(const PositionPrior& prior, const Pose& world_T_camera) {
-  const Eigen::Matrix3d rotation = world_T_camera.rotation.toRotationMatrix();
-  return rotation.transpose() * prior.information * rotation;
-}
-
-void addPrior(const PositionPrior& prior, const Pose& world_T_camera, PoseEquations& equations) {
-  const Eigen::Vector3d error = world_T_camera.translation - prior.position;
-  const Eigen::Vector3d pull = prior.information * error;
-  equations.cost += error.dot(pull);
-  equations.information.topLeftCorner<3, 3>() += informationInCamera(prior, world_T_camera);
-  equations.gradient.head<3>() += world_T_camera.rotation.conjugate() * pull;
+void addPrior(const PosePrior& prior, const Pose& world_T_camera, PoseEquations& equations) {
+  const PoseEquations known = priorEquations(prior, world_T_camera);
+  equations.cost += known.cost;
+  equations.information += known.information;
+  equations.gradient += known.gradient;
 }
 
 // Levenberg's minimisation with the weights renewed at every step. While far from the solution Huber's threshold is
 // wide, so that a prediction several pixels off does not make every observation an outlier.
 // `shutterAt`: gives the residuals of a camera with a pose.
 template <typename ShutterAt>
-bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observations, const PositionPrior& prior,
+bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observations, const PosePrior& prior,
               const PoseOptions& options, Pose& pose) {
   constexpr int wide_iterations = 3;
   constexpr double wide_factor = 5;
@@ -195,12 +188,11 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
   return pose.rotation.coeffs().allFinite() && pose.translation.allFinite();
 }
 
-// Inliers, rms and covariance at the final pose. `prior_information`: of the position, in the camera frame.
+// Inliers, rms and covariance at the final pose. `prior_information`: of the right-hand update there.
 template <typename Shutter>
-bool judge(const Shutter& shutter, const PreparedObservations& observations, const Eigen::Matrix3d& prior_information,
+bool judge(const Shutter& shutter, const PreparedObservations& observations, const Matrix6d& prior_information,
            const PoseOptions& options, PoseResult& result) {
-  Matrix6d information = Matrix6d::Zero();
-  information.topLeftCorner<3, 3>() = prior_information;
+  Matrix6d information = prior_information;
   Eigen::Array2d weighted_squares = Eigen::Array2d::Zero();  // across the edge, along it
   double squares = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -253,9 +245,17 @@ PoseObservation observeWithDepth(const Camera& camera, const Pose& camera_T_host
   return observation;
 }
 
+PosePrior moved(const Similarity& new_S_old, const PosePrior& prior) {
+  PosePrior result{moved(new_S_old, prior.world_T_camera), prior.information};
+  const double old_units_a_new_one = 1 / new_S_old.scale;
+  result.information.topRows<3>() *= old_units_a_new_one;
+  result.information.leftCols<3>() *= old_units_a_new_one;
+  return result;
+}
+
 PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
                       const PoseOptions& options, std::pmr::memory_resource* memory, const RowMotion& motion,
-                      const PositionPrior& prior) {
+                      const PosePrior& prior) {
   PoseResult result(memory);
   result.world_T_camera = initial_world_T_camera;
   result.inliers.assign(observations.size(), 0);
@@ -265,7 +265,7 @@ PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, 
   const auto adjust = [&](const auto& shutterAt) {
     Pose pose = initial_world_T_camera;
     result.converged = minimize(shutterAt, prepared, prior, options, pose) &&
-                       judge(shutterAt(pose), prepared, informationInCamera(prior, pose), options, result);
+                       judge(shutterAt(pose), prepared, priorEquations(prior, pose).information, options, result);
     if (result.converged) result.world_T_camera = pose;
   };
   if (camera.readout_s == 0) {
@@ -284,6 +284,24 @@ PoseEquations poseEquations(const Camera& camera, const MovingCamera& moving, co
   motion.before = moving.twist;
   if (camera.readout_s == 0) return linearize(GlobalShutter(camera, moving.world_T_camera), prepared, options.huber);
   return linearize(RollingShutter(camera, motion, moving.world_T_camera), prepared, options.huber);
+}
+
+PoseEquations priorEquations(const PosePrior& prior, const Pose& world_T_camera) {
+  PoseEquations equations;
+  if (prior.information.isZero(0)) return equations;
+  const Eigen::Quaterniond prior_R_camera = prior.world_T_camera.rotation.conjugate() * world_T_camera.rotation;
+  Vector6d error;
+  error.head<3>() =
+      prior.world_T_camera.rotation.conjugate() * (world_T_camera.translation - prior.world_T_camera.translation);
+  error.tail<3>() = rotationLog(prior_R_camera);
+  Matrix6d jacobian = Matrix6d::Zero();
+  jacobian.topLeftCorner<3, 3>() = prior_R_camera.toRotationMatrix();
+  jacobian.bottomRightCorner<3, 3>() = rightJacobian(error.tail<3>()).inverse();
+  const Matrix6d weighted = prior.information * jacobian;
+  equations.cost = error.dot(prior.information * error);
+  equations.information.noalias() = jacobian.transpose() * weighted;
+  equations.gradient.noalias() = weighted.transpose() * error;
+  return equations;
 }
 
 Matrix6d poseInformation(const Camera& camera, const Pose& world_T_camera, const PoseObservations& observations) {

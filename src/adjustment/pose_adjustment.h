@@ -9,6 +9,7 @@
 #include "geometry/measurement.h"
 #include "geometry/pose.h"
 #include "geometry/rolling_shutter.h"
+#include "geometry/similarity.h"
 
 namespace edgeslam {
 
@@ -43,10 +44,13 @@ struct PoseOptions {
 };
 
 // Where the camera is held to be before anything is measured.
-struct PositionPrior {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();     // world frame
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // inverse covariance, world frame; zero: nothing is known
+struct PosePrior {
+  Pose world_T_camera;
+  // Inverse covariance of the right-hand update [translation; rotation] there; zero where nothing is known.
+  Matrix6d information = Matrix6d::Zero();
 };
+
+PosePrior moved(const Similarity& new_S_old, const PosePrior& prior);
 
 struct PoseResult {
   explicit PoseResult(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
@@ -72,7 +76,7 @@ struct PoseResult {
 // way.
 PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, const PoseObservations& observations,
                       const PoseOptions& options, std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
-                      const RowMotion& motion = {}, const PositionPrior& prior = {});
+                      const RowMotion& motion = {}, const PosePrior& prior = {});
 
 // The robust cost of a pose, and its derivatives by the right-hand update: half of the gradient, and Gauss' and
 // Newton's half of the second derivative.
@@ -85,6 +89,9 @@ struct PoseEquations {
 // What is measured says of a pose. The rows are read while the camera moves by its twist.
 PoseEquations poseEquations(const Camera& camera, const MovingCamera& moving, const PoseObservations& observations,
                             const PoseOptions& options);
+
+// What is known beforehand says of it: half of the cost's derivatives, as above.
+PoseEquations priorEquations(const PosePrior& prior, const Pose& world_T_camera);
 
 // Inverse covariance of the right-hand update [translation; rotation] that the observations' standard deviations give a
 // camera there, whatever the residuals are.

@@ -46,11 +46,13 @@ PoseObservations observationsOf(const Camera& camera, const Map& map, int world,
   return observations;
 }
 
-PositionPrior whereItWasCarried(const PoseObservations& observations, const Eigen::Vector3d& position) {
+PosePrior whereItWasCarried(const PoseObservations& observations, const Pose& world_T_camera) {
   std::vector<double> distances;
-  for (const PoseObservation& observation : observations) distances.push_back((observation.point - position).norm());
+  for (const PoseObservation& o : observations) distances.push_back((o.point - world_T_camera.translation).norm());
   const double sigma = carried_sigma * upperMedian(distances);
-  return {position, Eigen::Matrix3d::Identity() / (sigma * sigma)};
+  PosePrior prior{world_T_camera};
+  prior.information.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / (sigma * sigma);
+  return prior;
 }
 
 double secondsBetween(const FrameRecord& a, const FrameRecord& b) {
@@ -174,7 +176,7 @@ std::optional<Pose> locateAnew(const Camera& camera, const Map& map, int world, 
   motion.before = carried.twist;
   const PoseResult pose =
       adjustPose(camera, carried.world_T_camera, observations, options, std::pmr::get_default_resource(), motion,
-                 whereItWasCarried(observations, carried.world_T_camera.translation));
+                 whereItWasCarried(observations, carried.world_T_camera));
   const double enough = std::max<double>(fewest_points, least_share * static_cast<double>(observations.size()));
   if (!pose.converged || pose.inlier_count < enough) return std::nullopt;
   return pose.world_T_camera;

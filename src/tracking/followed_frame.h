@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "adjustment/pose_adjustment.h"
 #include "edges/edge_detection.h"
 #include "map/keyframe.h"
 #include "tracking/measured_noise.h"
@@ -19,6 +20,7 @@ struct FollowedFrame {
   Pose world_T_camera;
   Twist twist = Twist::Zero();             // of the camera as its rows were read; 0 where they are read at once
   Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation], in the map as it is
+  PosePrior known;                         // of its pose before anything was measured in it
   int inlier_count = 0;                    // map points that agree with the pose
   double outlier_share = 0;                // of the map points in view
   double scene_depth = 1;                  // median distance of the map points that the last frame saw [map units]

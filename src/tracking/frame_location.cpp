@@ -115,14 +115,14 @@ std::optional<FramePose> FrameLocation::poseInMap(const MapView& view, const Loc
                                                   FollowedFrame& frame, LocationFigures& figures,
                                                   std::pmr::memory_resource& memory, StageClock& clock) const {
   const FramePose first =
-      estimatePose(camera_, view, frame.tracks, world_T_predicted, options_.pose, &memory, prior.motion);
+      estimatePose(camera_, view, frame.tracks, world_T_predicted, options_.pose, &memory, prior.motion, prior.known);
   if (!first.result.converged) return std::nullopt;
   clock.finished(Stage::pose);
   refineTracks(camera_, view, *frame.images, {first.result.world_T_camera, first.result.twist}, context.scene_depth,
                options_.refinement, frame.tracks);
   clock.finished(Stage::refinement);
-  FramePose pose =
-      estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory, prior.motion);
+  FramePose pose = estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory,
+                                prior.motion, prior.known);
   figures.in_view = static_cast<int>(pose.track_of_observation.size());
   figures.agree = pose.result.inlier_count;
   figures.asked = fewestInliers(pose.track_of_observation.size(), context, options_.acceptance);

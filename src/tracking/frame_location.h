@@ -36,7 +36,8 @@ struct LocationOptions {
 
 // What is known before a frame is located.
 struct LocationPrior {
-  Pose world_T_predicted;         // from motion alone
+  Pose world_T_predicted;         // from motion alone ...
+  PosePrior known;                // ... where that is known well enough to count beside what is measured
   bool regains = false;           // the frame before was blurred, lost, or found again by others
   bool knows_motion = false;      // it and the one before that were located in this map
   const PointAccuracy& accuracy;  // of what is measured in this frame

@@ -17,6 +17,11 @@ double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return static_
 
 }  // namespace
 
+PosePrior priorOf(const InertialPrediction& prediction) {
+  if (!prediction.knows_position) return {};
+  return {prediction.world_T_camera, prediction.covariance.inverse()};
+}
+
 InertialMotion::InertialMotion(const std::optional<InertialUnit>& unit) {
   if (!unit) return;
   history_.emplace(*unit);
@@ -27,8 +32,19 @@ void InertialMotion::add(const InertialSample& sample) {
   if (history_) history_->add(sample);
 }
 
-void InertialMotion::observe(const TimedCamera& camera, double sigma) {
-  if (history_) located_[count_++ % located_.size()] = {camera, sigma};
+void InertialMotion::observe(const TimedCamera& last, const TimedCamera& camera, double sigma) {
+  if (!history_) return;
+  moveAlongWith(last);
+  located_[count_++ % located_.size()] = {camera, sigma};
+}
+
+// Where the map was adjusted, the way until then is the same, only elsewhere.
+void InertialMotion::moveAlongWith(const TimedCamera& last) {
+  if (count_ == 0) return;
+  const TimedCamera& latest = located_[(count_ - 1) % located_.size()].camera;
+  if (latest.time_ns != last.time_ns) return;
+  const Pose new_T_old = last.world_T_camera * latest.world_T_camera.inverse();
+  for (Located& located : located_) located.camera.world_T_camera = new_T_old * located.camera.world_T_camera;
 }
 
 // Of the unit [m].

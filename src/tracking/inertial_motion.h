@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "adjustment/pose_adjustment.h"
 #include "inertia/inertial_alignment.h"
 #include "inertia/inertial_history.h"
 #include "map/keyframe.h"
@@ -17,6 +18,9 @@ struct InertialPrediction {
   Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation]
   bool knows_position = false;             // else it is the camera's own motion that goes on
 };
+
+// What a prediction says beside what is measured in a frame: nothing where the position is not known.
+PosePrior priorOf(const InertialPrediction& prediction);
 
 // How the camera turned.
 struct InertialTurn {
@@ -31,8 +35,9 @@ class InertialMotion {
 
   void add(const InertialSample& sample);
 
-  // Every frame that was located; `sigma`: standard deviation of its place [map units].
-  void observe(const TimedCamera& camera, double sigma);
+  // Every frame that was located, after `last` where the map has it now; `sigma`: standard deviation of its place [map
+  // units].
+  void observe(const TimedCamera& last, const TimedCamera& camera, double sigma);
   // Lengths are in another unit, or the place is another one, from now on.
   void forget() { count_ = 0; }
 
@@ -66,6 +71,7 @@ class InertialMotion {
     double sigma = 0;                                    // standard deviation, each axis [m/s]
   };
 
+  void moveAlongWith(const TimedCamera& last);
   Eigen::Vector3d place(const Pose& world_T_camera, double metres_a_unit) const;
   std::optional<Speed> speedAt(const TimedCamera& last, const InertialAlignment& alignment) const;
 

@@ -11,10 +11,11 @@ namespace edgeslam {
 namespace {
 
 // Where the camera was, and how far it may have moved since.
-PositionPrior heldPosition(const HeldCamera& held, double sigma) {
-  const Eigen::Matrix3d rotation = held.world_T_last.rotation.toRotationMatrix();
-  const Eigen::Matrix3d known = rotation * held.covariance.topLeftCorner<3, 3>() * rotation.transpose();
-  return {held.world_T_last.translation, (known + squared(sigma) * Eigen::Matrix3d::Identity()).inverse()};
+PosePrior heldPosition(const HeldCamera& held, double sigma) {
+  const Eigen::Matrix3d known = held.covariance.topLeftCorner<3, 3>();
+  PosePrior prior{held.world_T_last};
+  prior.information.topLeftCorner<3, 3>() = (known + squared(sigma) * Eigen::Matrix3d::Identity()).inverse();
+  return prior;
 }
 
 double largestDeviationOf(const Eigen::Matrix3d& covariance) {

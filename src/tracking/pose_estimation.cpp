@@ -34,7 +34,7 @@ double medianInverseDepth(const MapView& view, const std::vector<Track>& tracks,
 
 FramePose estimatePose(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
                        const Pose& world_T_predicted, const FramePoseOptions& options,
-                       std::pmr::memory_resource* memory, const RowMotion& motion) {
+                       std::pmr::memory_resource* memory, const RowMotion& motion, const PosePrior& prior) {
   FramePose pose(memory);
   PoseObservations observations(memory);
   observations.reserve(tracks.size());
@@ -48,7 +48,7 @@ FramePose estimatePose(const Camera& camera, const MapView& view, const std::vec
                 {inverse_depth, options.unmapped_depth_sigma * inverse_depth, options.unmapped_weakening, 0},
                 observations);
   }
-  pose.result = adjustPose(camera, world_T_predicted, observations, options, memory, motion);
+  pose.result = adjustPose(camera, world_T_predicted, observations, options, memory, motion, prior);
   observations.resize(mapped);
   keepMapped(pose);
   if (pose.result.inlier_count < options.fewest) pose.result.converged = false;

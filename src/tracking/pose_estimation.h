@@ -25,11 +25,12 @@ struct FramePose {
 };
 
 // Tracks without a map point help with what they measure across their epipolar lines; inliers and their count are of
-// the map points alone.
+// the map points alone. `prior` counts beside what is measured, but not in a pose that RANSAC begins: where the prior
+// is wrong, that one outvotes it.
 FramePose estimatePose(const Camera& camera, const MapView& view, const std::vector<Track>& tracks,
                        const Pose& world_T_predicted, const FramePoseOptions& options,
                        std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
-                       const RowMotion& motion = {});
+                       const RowMotion& motion = {}, const PosePrior& prior = {});
 
 // What is not mapped helps a pose, but says nothing of how much of the map is found again: takes it out of the result.
 void keepMapped(FramePose& pose);

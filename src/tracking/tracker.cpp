@@ -140,8 +140,14 @@ bool Tracker::locate(Work& work) {
   if (is_lost && secondsSince(lost_since_ns_, work.time_ns) > options_.regain_seconds) return false;
   scratch_.release();
   const bool regains = is_lost || last_was_found_again_;
-  const LocationPrior prior{motion_.predict(last_, work.time_ns, view_).world_T_camera, regains, located_in_a_row_ >= 2,
-                            preparation_.accuracy(), motion_.whileRowsAreRead(last_, work.time_ns, mapStands())};
+  const InertialPrediction predicted = motion_.predict(last_, work.time_ns, view_);
+  frame_.known = mapStands() ? priorOf(predicted) : PosePrior();
+  const LocationPrior prior{predicted.world_T_camera,
+                            frame_.known,
+                            regains,
+                            located_in_a_row_ >= 2,
+                            preparation_.accuracy(),
+                            motion_.whileRowsAreRead(last_, work.time_ns, mapStands())};
   const bool is_located = location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
   if (figures_.is_leap) frame_.tracks.clear();  // nor is it recovered by them
   return is_located;
@@ -535,6 +541,7 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   last_.world_T_camera = world_T_camera;
   last_.twist.setZero();
   last_.covariance = covariance;
+  last_.known = {};
   std::swap(view_, view);
   last_.inlier_count = countInMap(view_, last_.tracks);
   last_was_found_again_ = true;
@@ -611,11 +618,12 @@ void Tracker::adopt(MapView& view) {
   }
   scratch_.release();
   last_.twist = moved(*new_S_old, last_.twist);
+  last_.known = moved(*new_S_old, last_.known);
   last_.scene_depth *= new_S_old->scale;
   RowMotion motion;
   motion.before = last_.twist;
   const FramePose again =
-      estimatePose(camera_, view_, last_.tracks, moved_pose, options_.location.pose, &scratch_, motion);
+      estimatePose(camera_, view_, last_.tracks, moved_pose, options_.location.pose, &scratch_, motion, last_.known);
   const bool is_measured = again.result.converged && !last_.is_by_wheels;
   last_.world_T_camera = is_measured ? again.result.world_T_camera : moved_pose;
 }

@@ -24,7 +24,7 @@ bool isWithin(const Matrix6d& covariance, double largest_position_deviation, dou
 
 void UnseenMotion::observe(const FollowedFrame& last, const FollowedFrame& now, double sigma, const MapView& view) {
   motion_.observe(cameraOf(last), cameraOf(now));
-  inertia_.observe(cameraOf(now), sigma);
+  inertia_.observe(cameraOf(last), cameraOf(now), sigma);
   if (now.is_by_wheels) return;
   wheels_.observe(cameraOf(now), now.covariance, view.wheels);
   located_place_ = now.wheels;

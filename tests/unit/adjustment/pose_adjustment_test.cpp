@@ -359,7 +359,8 @@ TEST(PoseAdjustment, APriorOfThePositionCounts) {
   const PoseResult without = adjustPose(trial.camera, trial.truth, trial.observations, {});
   ASSERT_TRUE(without.converged);
   const auto with = [&](const Eigen::Vector3d& off, double sigma) {
-    const PositionPrior prior{trial.truth.translation + off, Eigen::Matrix3d::Identity() / (sigma * sigma)};
+    PosePrior prior{{trial.truth.rotation, trial.truth.translation + off}};
+    prior.information.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / (sigma * sigma);
     PoseResult result =
         adjustPose(trial.camera, trial.truth, trial.observations, {}, std::pmr::get_default_resource(), {}, prior);
     EXPECT_TRUE(result.converged);
@@ -374,6 +375,62 @@ TEST(PoseAdjustment, APriorOfThePositionCounts) {
   for (const double sigma : {1e-3, 1e-2}) {
     EXPECT_LT(with(Eigen::Vector3d::Zero(), sigma).covariance.trace(), without.covariance.trace()) << sigma;
   }
+}
+
+PosePrior priorOf(const Pose& pose, double sigma_m, double sigma_rad) {
+  PosePrior prior{pose};
+  prior.information.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / (sigma_m * sigma_m);
+  prior.information.bottomRightCorner<3, 3>() = Eigen::Matrix3d::Identity() / (sigma_rad * sigma_rad);
+  return prior;
+}
+
+TEST(PoseAdjustment, APriorOfTheRotationCountsLikewise) {
+  Random random(16);
+  const Trial trial = makeTrial(random, {});
+  const Vector6d off = (Vector6d() << 0, 0, 0, 4e-4, -3e-4, 5e-4).finished();
+  const auto with = [&](double sigma_rad) {
+    const PosePrior prior = priorOf(retract(trial.truth, off), 1e3, sigma_rad);
+    return adjustPose(trial.camera, trial.truth, trial.observations, {}, std::pmr::get_default_resource(), {}, prior);
+  };
+  const PoseResult strong = with(1e-8), weak = with(1e3);
+  const PoseResult without = adjustPose(trial.camera, trial.truth, trial.observations, {});
+  ASSERT_TRUE(strong.converged && weak.converged);
+  EXPECT_LT((poseError(strong.world_T_camera, trial.truth) - off).tail<3>().norm(), 1e-6);
+  EXPECT_LT(strong.covariance.diagonal().tail<3>().maxCoeff(), 1e-15);
+  EXPECT_LT(poseError(weak.world_T_camera, without.world_T_camera).norm(), 1e-6);
+}
+
+TEST(PoseAdjustment, DerivativesOfAPriorAreTheNumericOnes) {
+  Random random(17);
+  for (int run = 0; run < 10; ++run) {
+    PosePrior prior{randomPose(random, 2, 1)};
+    const Matrix6d root = Matrix6d::NullaryExpr([&](auto, auto) { return uniform(random, -1, 1); });
+    prior.information = root * root.transpose();
+    Vector6d away = Vector6d::NullaryExpr([&](auto) { return uniform(random, -0.5, 0.5); });
+    const Pose pose = retract(prior.world_T_camera, away);
+    const PoseEquations equations = priorEquations(prior, pose);
+    constexpr double step = 1e-6;
+    for (int axis = 0; axis < 6; ++axis) {
+      const auto costAt = [&](double by) {
+        return priorEquations(prior, retract(pose, by * Vector6d::Unit(axis))).cost;
+      };
+      EXPECT_NEAR((costAt(step) - costAt(-step)) / (2 * step), 2 * equations.gradient[axis], 1e-7) << axis;
+    }
+    // Its own covariance, where it is right.
+    EXPECT_LT((priorEquations(prior, prior.world_T_camera).information - prior.information).norm(), 1e-12);
+    EXPECT_EQ(priorEquations(prior, prior.world_T_camera).cost, 0);
+  }
+  EXPECT_EQ(priorEquations({}, randomPose(random, 2, 1)).cost, 0);
+}
+
+// Where the world becomes another, the same place and the same doubt.
+TEST(PoseAdjustment, APriorMovesWithTheWorld) {
+  Random random(18);
+  const PosePrior prior = priorOf(randomPose(random, 2, 1), 0.02, 0.01);
+  const Pose pose = retract(prior.world_T_camera, 0.03 * Vector6d::Ones());
+  const Similarity new_S_old{1.7, randomPose(random, 3, 2).rotation, Eigen::Vector3d(0.3, -2, 1)};
+  EXPECT_NEAR(priorEquations(moved(new_S_old, prior), moved(new_S_old, pose)).cost, priorEquations(prior, pose).cost,
+              1e-9);
 }
 
 TEST(PoseAdjustment, OnePointSeenManyTimesIsNoPose) {

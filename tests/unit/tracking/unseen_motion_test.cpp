@@ -92,5 +92,49 @@ TEST_F(UnseenMotionOfRobot, WheelsThatTurnOtherwiseThanTheGyroscopeSlip) {
   EXPECT_LT(turnError(with.predict(last_, nanoseconds(4), view_).world_T_camera, 4), 1e-3) << "by the gyroscope";
 }
 
+// A camera that is pushed along x, and a map that is adjusted on the way: no speed comes from that.
+TEST(UnseenMotion, WhereTheMapIsAdjustedTheSpeedStaysTheSame) {
+  InertialUnit unit;
+  MapView view;
+  view.inertia.emplace();
+  view.inertia->is_known = true;
+  view.inertia->gravity = {0, 0, -standard_gravity};
+  view.inertia->rate_bias_sigma = 1e-4;
+  view.inertia->force_bias_sigma = 1e-3;
+  UnseenMotion motion(unit, {}, std::nullopt, {});
+  constexpr double push = 0.8;  // [m/s^2]
+  for (double time_s = 0; time_s < 2; time_s += 0.005) {
+    InertialSample sample;
+    sample.time_ns = nanoseconds(time_s);
+    sample.force = {push, 0, standard_gravity};
+    motion.add(sample);
+  }
+  const auto frameAt = [&](double time_s, const Eigen::Vector3d& adjusted) {
+    FollowedFrame frame;
+    auto images = std::make_shared<FrameImages>();
+    images->time_ns = nanoseconds(time_s);
+    frame.images = images;
+    frame.world_T_camera.translation = Eigen::Vector3d(0.5 * push * time_s * time_s, 0, 0) + adjusted;
+    frame.covariance.diagonal().setConstant(1e-8);
+    return frame;
+  };
+  const Eigen::Vector3d before = Eigen::Vector3d::Zero(), after(0.1, -0.2, 0.05);
+  constexpr int adjusted_at = 25;
+  for (int i = 1; i <= 35; ++i) {
+    const Eigen::Vector3d& place = i <= adjusted_at ? before : after;
+    const FollowedFrame last = frameAt((i - 1) * robot_frame_s, place), now = frameAt(i * robot_frame_s, place);
+    motion.observe(last, now, 1e-4, view);
+    const double ahead_s = (i + 1) * robot_frame_s;
+    if (i < 5) continue;
+    const InertialPrediction predicted = motion.predict(now, nanoseconds(ahead_s), view);
+    ASSERT_TRUE(predicted.knows_position) << i;
+    const Eigen::Vector3d error =
+        predicted.world_T_camera.translation - frameAt(ahead_s, place).world_T_camera.translation;
+    EXPECT_LT(error.norm(), 1e-3) << i;
+    EXPECT_GT(priorOf(predicted).information.diagonal().minCoeff(), 0);
+  }
+  EXPECT_TRUE(priorOf(InertialPrediction()).information.isZero());
+}
+
 }  // namespace
 }  // namespace edgeslam
