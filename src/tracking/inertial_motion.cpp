@@ -1,6 +1,5 @@
 #include "tracking/inertial_motion.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "geometry/squared.h"
@@ -33,18 +32,7 @@ void InertialMotion::add(const InertialSample& sample) {
 }
 
 void InertialMotion::observe(const TimedCamera& last, const TimedCamera& camera, double sigma) {
-  if (!history_) return;
-  moveAlongWith(last);
-  located_[count_++ % located_.size()] = {camera, sigma};
-}
-
-// Where the map was adjusted, the way until then is the same, only elsewhere.
-void InertialMotion::moveAlongWith(const TimedCamera& last) {
-  if (count_ == 0) return;
-  const TimedCamera& latest = located_[(count_ - 1) % located_.size()].camera;
-  if (latest.time_ns != last.time_ns) return;
-  const Pose new_T_old = last.world_T_camera * latest.world_T_camera.inverse();
-  for (Located& located : located_) located.camera.world_T_camera = new_T_old * located.camera.world_T_camera;
+  if (history_) located_.add(last, {camera, sigma});
 }
 
 // Of the unit [m].
@@ -55,12 +43,12 @@ Eigen::Vector3d InertialMotion::place(const Pose& world_T_camera, double metres_
 // From a frame some tenths of a second ago: the way from there, less what was felt on it.
 std::optional<InertialMotion::Speed> InertialMotion::speedAt(const TimedCamera& last,
                                                              const InertialAlignment& alignment) const {
-  if (count_ == 0) return std::nullopt;
-  const Located& latest = located_[(count_ - 1) % located_.size()];
+  if (located_.size() == 0) return std::nullopt;
+  const Located& latest = located_.before(0);
   if (latest.camera.time_ns != last.time_ns) return std::nullopt;
   const Located* before = nullptr;
-  for (std::size_t back = 1; back < std::min(count_, located_.size()); ++back) {
-    const Located& located = located_[(count_ - 1 - back) % located_.size()];
+  for (std::size_t back = 1; back < located_.size(); ++back) {
+    const Located& located = located_.before(back);
     if (secondsBetween(located.camera.time_ns, last.time_ns) > longest_for_speed_s) break;
     before = &located;
   }

@@ -2,13 +2,13 @@
 // earth is known, how it moved.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "adjustment/pose_adjustment.h"
 #include "inertia/inertial_alignment.h"
 #include "inertia/inertial_history.h"
 #include "map/keyframe.h"
+#include "tracking/latest_frames.h"
 #include "tracking/motion_model.h"
 
 namespace edgeslam {
@@ -39,7 +39,7 @@ class InertialMotion {
   // units].
   void observe(const TimedCamera& last, const TimedCamera& camera, double sigma);
   // Lengths are in another unit, or the place is another one, from now on.
-  void forget() { count_ = 0; }
+  void forget() { located_.forget(); }
 
   // At `time_ns`, after `last`, whose covariance is given. `alignment`: of the world, where it is known; `by_camera`:
   // where the camera's own motion leads. None where nothing was measured.
@@ -71,14 +71,12 @@ class InertialMotion {
     double sigma = 0;                                    // standard deviation, each axis [m/s]
   };
 
-  void moveAlongWith(const TimedCamera& last);
   Eigen::Vector3d place(const Pose& world_T_camera, double metres_a_unit) const;
   std::optional<Speed> speedAt(const TimedCamera& last, const InertialAlignment& alignment) const;
 
   std::optional<InertialHistory> history_;
   Pose camera_T_imu_;
-  std::array<Located, 16> located_{};  // a ring
-  std::size_t count_ = 0;              // of all that were located in a row
+  LatestFrames<Located, 16> located_;
   KeyframeId last_keyframe_ = -1;
   std::int64_t keyframe_ns_ = 0;
   InertialLink since_start_;  // as far as it was asked for

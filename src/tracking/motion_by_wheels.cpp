@@ -1,7 +1,6 @@
 #include "tracking/motion_by_wheels.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
 #include "geometry/squared.h"
@@ -71,15 +70,16 @@ bool MotionByWheels::contradicts(const Located& before, const Located& now, cons
   return isFar(way_error, covariance);
 }
 
-void MotionByWheels::observe(const TimedCamera& camera, const Matrix6d& covariance, const WheelScale& scale) {
+void MotionByWheels::observe(const TimedCamera& last, const TimedCamera& camera, const Matrix6d& covariance,
+                             const WheelScale& scale) {
   if (!wheels_) return;
   const std::optional<OdometryPlace> place = measuredAt(camera.time_ns);
   if (!place) return forget();
   const Located now{camera, covariance, *place};
-  located_[count_++ % located_.size()] = now;
+  located_.add(last, now);
   const Located* before = nullptr;
-  for (std::size_t back = 1; back < std::min(count_, located_.size()); ++back) {
-    const Located& located = located_[(count_ - 1 - back) % located_.size()];
+  for (std::size_t back = 1; back < located_.size(); ++back) {
+    const Located& located = located_.before(back);
     const double seconds = static_cast<double>(camera.time_ns - located.camera.time_ns) * 1e-9;
     if (seconds > longest_compared_s) break;
     before = &located;

@@ -2,9 +2,9 @@
 // and turn in the air.
 #pragma once
 
-#include <array>
 #include <optional>
 
+#include "tracking/latest_frames.h"
 #include "tracking/motion_model.h"
 #include "wheels/odometry_history.h"
 #include "wheels/wheel_motion.h"
@@ -37,11 +37,11 @@ class MotionByWheels {
   // At a time until which poses were added; of no piece where it is not known, or the wheels are not believed.
   OdometryPlace at(std::int64_t time_ns) const;
 
-  // Every frame that was located, with the covariance of its pose in the map. Wheels that contradict the camera for
-  // some frames are believed again once they agree with it for a while.
-  void observe(const TimedCamera& camera, const Matrix6d& covariance, const WheelScale& scale);
+  // Every frame that was located, after `last` where the map has it now, with the covariance of its pose. Wheels that
+  // contradict the camera for some frames are believed again once they agree with it for a while.
+  void observe(const TimedCamera& last, const TimedCamera& camera, const Matrix6d& covariance, const WheelScale& scale);
   // What was located until now does not go together with what comes.
-  void forget() { count_ = 0; }
+  void forget() { located_.forget(); }
   bool areBelieved() const { return are_believed_; }
 
   // At `time_ns`. `by_camera`: where the camera's own motion leads. None where the wheels do not tell it.
@@ -60,8 +60,7 @@ class MotionByWheels {
 
   std::optional<WheelOptions> wheels_;
   std::optional<OdometryHistory> history_;
-  std::array<Located, 64> located_{};  // a ring
-  std::size_t count_ = 0;              // of all that were located in a row
+  LatestFrames<Located, 64> located_;
   bool are_believed_ = true;
   int contradictions_ = 0, agreements_ = 0;  // in a row
   std::int64_t times_doubted_ = 0;

@@ -26,7 +26,7 @@ void UnseenMotion::observe(const FollowedFrame& last, const FollowedFrame& now, 
   motion_.observe(cameraOf(last), cameraOf(now));
   inertia_.observe(cameraOf(last), cameraOf(now), sigma);
   if (now.is_by_wheels) return;
-  wheels_.observe(cameraOf(now), now.covariance, view.wheels);
+  wheels_.observe(cameraOf(last), cameraOf(now), now.covariance, view.wheels);
   located_place_ = now.wheels;
   located_covariance_ = now.covariance;
   located_ns_ = now.images->time_ns;

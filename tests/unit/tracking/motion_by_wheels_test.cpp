@@ -30,7 +30,8 @@ class MotionByWheelsOfRobot : public testing::Test {
              const std::function<Pose(double)>& body) {
     for (double time_s = from_s; time_s < to_s - 1e-9; time_s += robot_frame_s) {
       motion_.add({nanoseconds(time_s) / 1000, body(time_s)});
-      motion_.observe({nanoseconds(time_s), cameraAt(truth(time_s))}, cameraCovariance(), known_scale);
+      motion_.observe({nanoseconds(last_s_), last_}, {nanoseconds(time_s), cameraAt(truth(time_s))}, cameraCovariance(),
+                      known_scale);
       last_s_ = time_s;
       last_ = cameraAt(truth(time_s));
     }
@@ -101,6 +102,17 @@ TEST_F(MotionByWheelsOfRobot, IsNotBelievedWhileTheWheelsSlip) {
   const OdometryPlace after = motion_.at(nanoseconds(last_s_));
   EXPECT_GE(after.piece, 0);
   EXPECT_FALSE(wheelMotion(robot_wheels, before, after));
+}
+
+TEST_F(MotionByWheelsOfRobot, StaysBelievedWhereTheMapIsAdjusted) {
+  const Pose adjustment{rotationExp({0, 0, 0.3}), {0.5, -0.4, 0}};
+  const auto adjusted = [&](double time_s) { return adjustment * slowCircle(time_s); };
+  drive(0, 2, slowCircle, slowCircle);
+  last_ = cameraAt(adjusted(last_s_));
+  const OdometryPlace before = motion_.at(nanoseconds(last_s_));
+  drive(2, 3, adjusted, slowCircle);
+  EXPECT_TRUE(motion_.areBelieved());
+  EXPECT_EQ(motion_.at(nanoseconds(last_s_)).piece, before.piece) << "nor were they doubted meanwhile";
 }
 
 TEST_F(MotionByWheelsOfRobot, IsNotBelievedWhereTheRobotIsCarriedAround) {
