@@ -5,11 +5,12 @@
 #include <climits>
 #include <cmath>
 
+#include "geometry/measurement.h"
+
 namespace edgeslam {
 namespace {
 
 constexpr size_t direction_count = 4;  // of an edge that are told apart, over half a turn
-constexpr float unknown_along = 1000;  // standard deviation of a point that nothing holds along its edge [px]
 
 // Of the line that the normal lies on: 0 is level, 1 slants from the upper left to the lower right, 2 is upright.
 size_t directionOf(const Eigen::Vector2f& normal) {

@@ -6,11 +6,13 @@
 
 namespace edgeslam {
 
+inline constexpr float unknown_along = 1000;  // standard deviation along an edge that tells nothing [px]
+
 struct Measurement {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();    // distorted image coordinates [px]
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();  // unit, across the edge, from dark to bright
   double sigma_normal = 0.5;                          // standard deviation across the edge [px]
-  double sigma_tangent = 1000.0;                      // and along it [px]
+  double sigma_tangent = unknown_along;               // and along it [px]
 };
 
 // W (2x2) with W^T W = information matrix: a pixel error e becomes W e, whose two entries (across, along) have

@@ -18,8 +18,6 @@ namespace {
 // Of a keyframe that nothing ties to another: all of the map's extent and any direction.
 constexpr double unknown_variance = 1;
 
-constexpr double unknown_along = 1000;  // standard deviation of a point of a straight edge, along it [px]
-
 struct SharedPoints {
   PoseObservations observations;
   double scale_information = 0;   // sum over the points of (depth over its standard deviation)^2

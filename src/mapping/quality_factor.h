@@ -21,7 +21,7 @@ struct QualityPoint {
 struct QualityOptions {
   // Farthest neighbours: in the image [px], and as the camera sees them. In a small image pixels lie far apart.
   double neighbour_px = 24;
-  double neighbour_deg = 2.6;
+  double neighbour_deg = 3.3;
   double straight_px = 1.0;            // a piece is straight where its middle lies so near to its chord [px]
   double same_depth_ratio = 0.12;      // neighbours' inverse depths agree within this share ...
   double straight_depth_ratio = 0.04;  // ... and a straight piece's middle lies on its chord within this one

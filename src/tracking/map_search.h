@@ -23,7 +23,7 @@ struct SearchPoint {
   Eigen::Vector2f source_normal = Eigen::Vector2f::UnitX();  // unit, from dark to bright
   bool corner = false;
   float sigma_normal = 0.5f;  // in the keyframe [px]
-  float sigma_tangent = 1000;
+  float sigma_tangent = unknown_along;
   Twist source_twist = Twist::Zero();  // of the keyframe as its rows were read
 };
 

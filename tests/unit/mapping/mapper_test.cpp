@@ -96,7 +96,6 @@ Mapper startedFromSpare(int frames) {
   MapperOptions options;
   options.initialisation.frames_between = 3;
   options.initialisation.five_point_corners = 1000;
-  options.initialisation.least_quality = 0.5;  // the wall's edges are steep
   Mapper mapper(distorted_camera, options);
   const EdgeScene scene = framesOnAWall(21);
   for (int i = 0; i < frames; ++i) {
