@@ -23,11 +23,11 @@ std::string shortNumber(double value) {
 
 }  // namespace
 
-double displacementLessRotation(const InitialFrames& frames) {
+double displacementLessRotation(const Camera& camera, const InitialFrames& frames) {
   constexpr std::size_t fewest_common = 8;
   const CommonBearings bearings = commonBearings(frames.first, frames.current());
   if (bearings.in_first.size() < fewest_common) return 0;
-  return relativeRotation(bearings.in_first, bearings.in_other).median_error;
+  return relativeRotation(bearings.in_first, bearings.in_other).median_error * meanFocalLength(camera);
 }
 
 InitialEvidence judgeInitialStructure(const InitialFrames& frames, const InitialStructure& structure,

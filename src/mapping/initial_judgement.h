@@ -9,9 +9,9 @@
 
 namespace edgeslam {
 
-// P13: median displacement of the points between the first and the current frame, less what a rotation explains [rad];
-// 0 where too few are in both.
-double displacementLessRotation(const InitialFrames& frames);
+// P13: median displacement of the points between the first and the current frame, less what a rotation explains [px]; 0
+// where too few are in both.
+double displacementLessRotation(const Camera& camera, const InitialFrames& frames);
 
 // What speaks for a structure, over the first frame's points that the current frame sees.
 struct InitialEvidence {

@@ -1,8 +1,5 @@
 #include "mapping/initialisation.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "mapping/initial_map.h"
 #include "mapping/initial_rivals.h"
 #include "mapping/initial_starts.h"
@@ -32,9 +29,7 @@ bool Initialisation::add(const TrackedFrame& frame) {
   if (!isDue()) return false;
 
   // P13: the first frame and this one are apart.
-  const double least =
-      std::min(options_.least_displacement_px / meanFocalLength(camera_), options_.least_displacement_deg * M_PI / 180);
-  if (displacementLessRotation(frames_) < least) {
+  if (displacementLessRotation(camera_, frames_) < options_.least_displacement_px) {
     waiting_for_ = "too little parallax: the points hardly moved, or by rotation only";
     return false;
   }

@@ -12,10 +12,7 @@ struct InitialisationOptions {
   double fading_share = 0.6;  // ... or one, where less than this share of the first frame's points is left
   // Frames after the first: with fewer, depths of edge points make any motion fit.
   int fewest_frames = 2;
-  // Median motion of the points, less what a rotation explains, to begin with: either is enough. In a small image
-  // pixels lie far apart.
-  double least_displacement_px = 3;
-  double least_displacement_deg = 0.41;
+  double least_displacement_px = 3;   // median motion in the image, less what a rotation explains, to begin with [px]
   double least_parallax_deg = 1.0;    // median angle under which the points see the two cameras [deg]
   double prior_sigma = 0.5;           // of the inverse depth around 1
   double largest_depth_sigma = 0.15;  // a point counts where its depth's standard deviation is below this share
