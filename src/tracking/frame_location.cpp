@@ -63,6 +63,7 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   const FrameImages& from = *last.images;
   const FrameImages& to = *frame.images;
   frame.noise = {};
+  frame.known = prior.known;
   frame.scene_depth = medianDepth(last.tracks, view, last.world_T_camera, last.scene_depth, &memory);
   const AlignmentPoints points =
       placeTracks(camera_, last.tracks, view, last.world_T_camera, frame.scene_depth, &memory);

@@ -84,6 +84,7 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   const bool is_sharp = preparation_.prepare(frame_index, time_ns, grey, frame_, work.clock);  // P1 to P4
   frame_.wheels = motion_.wheelsAt(time_ns);
   frame_.is_by_wheels = false;
+  frame_.known = {};
   const double without_s = lost_since_ns_ < 0 ? 0 : secondsSince(lost_since_ns_, time_ns);
   const bool any_will_do = !mapStands() || is_lost_ || without_s > options_.blur_gate.longest_rejection_s;
   if (!is_sharp && !any_will_do) {
@@ -141,9 +142,8 @@ bool Tracker::locate(Work& work) {
   scratch_.release();
   const bool regains = is_lost || last_was_found_again_;
   const InertialPrediction predicted = motion_.predict(last_, work.time_ns, view_);
-  frame_.known = mapStands() ? priorOf(predicted) : PosePrior();
   const LocationPrior prior{predicted.world_T_camera,
-                            frame_.known,
+                            mapStands() ? priorOf(predicted) : PosePrior(),
                             regains,
                             located_in_a_row_ >= 2,
                             preparation_.accuracy(),

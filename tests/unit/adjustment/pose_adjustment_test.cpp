@@ -352,6 +352,13 @@ TEST(PoseAdjustment, ValuesThatAreNoNumbersAreOutliers) {
   EXPECT_FALSE(adjustPose(trial.camera, start, trial.observations, {}).converged);
 }
 
+PosePrior priorOf(const Pose& pose, double sigma_m, double sigma_rad) {
+  PosePrior prior{pose};
+  prior.information.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / (sigma_m * sigma_m);
+  prior.information.bottomRightCorner<3, 3>() = Eigen::Matrix3d::Identity() / (sigma_rad * sigma_rad);
+  return prior;
+}
+
 // A weak one changes nothing, a strong one decides; either is in the covariance.
 TEST(PoseAdjustment, APriorOfThePositionCounts) {
   Random random(14);
@@ -359,8 +366,7 @@ TEST(PoseAdjustment, APriorOfThePositionCounts) {
   const PoseResult without = adjustPose(trial.camera, trial.truth, trial.observations, {});
   ASSERT_TRUE(without.converged);
   const auto with = [&](const Eigen::Vector3d& off, double sigma) {
-    PosePrior prior{{trial.truth.rotation, trial.truth.translation + off}};
-    prior.information.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / (sigma * sigma);
+    const PosePrior prior = priorOf({trial.truth.rotation, trial.truth.translation + off}, sigma, INFINITY);
     PoseResult result =
         adjustPose(trial.camera, trial.truth, trial.observations, {}, std::pmr::get_default_resource(), {}, prior);
     EXPECT_TRUE(result.converged);
@@ -375,13 +381,6 @@ TEST(PoseAdjustment, APriorOfThePositionCounts) {
   for (const double sigma : {1e-3, 1e-2}) {
     EXPECT_LT(with(Eigen::Vector3d::Zero(), sigma).covariance.trace(), without.covariance.trace()) << sigma;
   }
-}
-
-PosePrior priorOf(const Pose& pose, double sigma_m, double sigma_rad) {
-  PosePrior prior{pose};
-  prior.information.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / (sigma_m * sigma_m);
-  prior.information.bottomRightCorner<3, 3>() = Eigen::Matrix3d::Identity() / (sigma_rad * sigma_rad);
-  return prior;
 }
 
 TEST(PoseAdjustment, APriorOfTheRotationCountsLikewise) {

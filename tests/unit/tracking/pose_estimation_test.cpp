@@ -72,6 +72,44 @@ TEST_F(PoseEstimation, OutliersAreNamed) {
   }
 }
 
+PosePrior priorAt(const Pose& pose, double sigma) { return {pose, Matrix6d::Identity() / (sigma * sigma)}; }
+
+TEST_F(PoseEstimation, WhatIsKnownBeforehandTellsWhatUprightEdgesDoNot) {
+  for (Track& track : tracks_) {
+    track.normal = {1, 0};
+    track.corner = false;
+    track.sigma_normal = 0.2f;
+    track.sigma_tangent = unknown_along;
+    if (const ViewPoint* point = findPoint(view_, track.id)) {
+      track.pixel = project(camera_, truth_.inverse() * worldPosition(view_, *point)).cast<float>();
+      track.pixel.y() += 4;  // all of them slide along
+    }
+  }
+  const Pose start{truth_.rotation, truth_.translation + Eigen::Vector3d(0, 0.02, 0)};
+  const auto estimate = [&](const PosePrior& prior) {
+    return estimatePose(camera_, view_, tracks_, start, {}, std::pmr::get_default_resource(), {}, prior);
+  };
+  const FramePose with = estimate(priorAt(truth_, 0.002)), without = estimate({});
+  expectTruth(with, 0.004, 0.004);
+  const auto leastCertain = [](const FramePose& pose) {
+    return pose.result.converged ? largestDeviation(pose.result.covariance, 1) : INFINITY;
+  };
+  EXPECT_LT(leastCertain(with), 0.003);
+  EXPECT_GT(leastCertain(without), 3 * leastCertain(with));
+}
+
+TEST_F(PoseEstimation, WhatWasKnownWronglyIsOutvoted) {
+  for (Track& track : tracks_) {
+    const ViewPoint* point = findPoint(view_, track.id);
+    if (point) track.pixel = project(camera_, truth_.inverse() * worldPosition(view_, *point)).cast<float>();
+  }
+  const Pose wrong{truth_.rotation, truth_.translation + Eigen::Vector3d(0.5, 0.3, 0)};
+  const FramePose pose =
+      estimatePose(camera_, view_, tracks_, wrong, {}, std::pmr::get_default_resource(), {}, priorAt(wrong, 1e-4));
+  expectTruth(pose);
+  EXPECT_TRUE(pose.by_resectioning);
+}
+
 TEST_F(PoseEstimation, AFailingPredictionIsReplacedByResectioning) {
   for (Track& track : tracks_) {  // resectioning takes pixels as they are
     const ViewPoint* point = findPoint(view_, track.id);
