@@ -7,9 +7,9 @@
 #include <iterator>
 #include <map>
 
-#include "calibration/pose_errors.h"
 #include "geometry/tangents.h"
 #include "inertia/inertial_history.h"
+#include "inertia/pose_errors.h"
 #include "samples/sample_feed.h"
 
 namespace edgeslam {

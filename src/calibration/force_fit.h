@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "calibration/camera_turns.h"
+#include "inertia/camera_turns.h"
 #include "inertia/inertial_unit.h"
 
 namespace edgeslam {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "calibration/camera_turns.h"
 #include "calibration/force_fit.h"
-#include "calibration/turn_fit.h"
+#include "inertia/camera_turns.h"
 #include "inertia/inertial_unit.h"
+#include "inertia/turn_fit.h"
 
 namespace edgeslam {
 

@@ -7,8 +7,8 @@
 #include <iterator>
 #include <optional>
 
-#include "calibration/gyroscope_turns.h"
 #include "geometry/median.h"
+#include "inertia/gyroscope_turns.h"
 
 namespace edgeslam {
 namespace {

@@ -5,8 +5,9 @@
 
 #include <vector>
 
-#include "calibration/camera_turns.h"
+#include "inertia/camera_turns.h"
 #include "inertia/inertial_unit.h"
+#include "inertia/turn_fit.h"
 
 namespace edgeslam {
 
@@ -25,7 +26,6 @@ struct TurnAlignment {
 };
 
 constexpr double longest_offset_tried_s = 0.5;
-constexpr std::size_t fewest_turns = 60;
 
 // Offsets up to longest_offset_tried_s about `offset_s`, which is what is known of it.
 TurnAlignment alignTurns(const std::vector<CameraTurn>& turns, const std::vector<InertialSample>& samples,

@@ -9,7 +9,7 @@
 #include "simulator/inertial_simulation.h"
 #include "system/program.h"
 #include "unit/calibration/rendered_board.h"
-#include "unit/calibration/turning_camera.h"
+#include "unit/inertia/turning_camera.h"
 
 namespace edgeslam {
 namespace {

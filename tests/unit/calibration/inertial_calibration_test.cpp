@@ -5,8 +5,8 @@
 
 #include "calibration/inertial_calibration_text.h"
 #include "frames/inertial_file.h"
-#include "unit/calibration/turning_camera.h"
 #include "unit/files/temporary_folder.h"
+#include "unit/inertia/turning_camera.h"
 
 namespace edgeslam::test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "unit/calibration/turning_camera.h"
+#include "unit/inertia/turning_camera.h"
 
 namespace edgeslam::test {
 namespace {

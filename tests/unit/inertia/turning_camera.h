@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "calibration/camera_turns.h"
 #include "geometry/angles.h"
+#include "inertia/camera_turns.h"
 #include "inertia/inertial_unit.h"
 
 namespace edgeslam::test {
@@ -14,6 +14,7 @@ namespace edgeslam::test {
 struct TurningCamera {
   Eigen::Vector3d swing_rad = Eigen::Vector3d(0.25, 0.3, 0.2);  // about the camera's axes
   double pace = 1;                                              // of turning
+  Eigen::Vector3d steady_rate = Eigen::Vector3d::Zero();        // that it turns with besides [rad/s]
   double seconds = 20;
   double frame_rate_hz = 30, sample_rate_hz = 200;
   double pose_noise_rad = 3e-4, rate_noise = 2e-4, rate_walk = 2e-5;  // as InertialUnit's
@@ -29,7 +30,7 @@ struct TurningCamera {
   Eigen::Quaterniond orientationAt(double time_s) const {
     const double phase = pace * time_s;
     const Eigen::Vector3d turned(std::sin(3.1 * phase), std::sin(2.3 * phase + 1), std::sin(4.3 * phase + 2));
-    return rotationExp(swing_rad.cwiseProduct(turned));
+    return rotationExp(time_s * steady_rate) * rotationExp(swing_rad.cwiseProduct(turned));
   }
   // Of the camera, its own frame [rad/s].
   Eigen::Vector3d rateAt(double time_s) const {

@@ -39,7 +39,7 @@ class GyroscopeTurns {
   std::optional<TurnedAt> at(std::int64_t time_ns) const;
 
   const std::vector<InertialSample>& samples_;
-  InertialBias bias_;
+  Eigen::Vector3d rate_bias_;
   std::vector<Turned> until_;  // each sample
 };
 

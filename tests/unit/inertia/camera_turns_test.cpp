@@ -1,5 +1,5 @@
 // Which poses make a turn.
-#include "calibration/camera_turns.h"
+#include "inertia/camera_turns.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Weights of errors, and parts of a recording.
-#include "calibration/pose_errors.h"
+#include "inertia/pose_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "calibration/camera_turns.h"
-#include "calibration/gyroscope_turns.h"
+#include "inertia/camera_turns.h"
+#include "inertia/gyroscope_turns.h"
 
 namespace edgeslam {
 
@@ -20,6 +20,8 @@ struct TurnParameters {
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 using Matrix37d = Eigen::Matrix<double, 3, 7>;
+
+constexpr std::size_t fewest_turns = 60;
 
 TurnParameters changed(const TurnParameters& parameters, const Vector7d& change);
 
@@ -43,8 +45,8 @@ struct TurnFit {
 // From `start` on, which is near. Errors of a camera's poses hang together over a while, so that parts of the recording
 // and not turns are what is independent: the scatter of what each part adds gives the covariance, and the walk of the
 // bias, `rate_walk` [rad/s^2/sqrt(Hz)], adds to it. None where too few turns were measured by both, or they do not tell
-// all parameters.
+// all parameters. A rotation that is known stays as it is.
 std::optional<TurnFit> fitTurns(const std::vector<CameraTurn>& turns, const std::vector<InertialSample>& samples,
-                                const TurnParameters& start, double rate_walk);
+                                const TurnParameters& start, double rate_walk, bool rotation_is_known = false);
 
 }  // namespace edgeslam

@@ -1,9 +1,8 @@
-#include "calibration/gyroscope_turns.h"
+#include "inertia/gyroscope_turns.h"
 
 #include <algorithm>
 
 #include "inertia/inertial_history.h"
-#include "inertia/preintegration.h"
 
 namespace edgeslam {
 namespace {
@@ -20,8 +19,7 @@ Eigen::Vector3d interpolatedRate(const InertialSample& from, const InertialSampl
 }  // namespace
 
 GyroscopeTurns::GyroscopeTurns(const std::vector<InertialSample>& samples, const Eigen::Vector3d& rate_bias)
-    : samples_(samples) {
-  bias_.rate = rate_bias;
+    : samples_(samples), rate_bias_(rate_bias) {
   until_.reserve(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (i == 0) {
@@ -36,10 +34,11 @@ GyroscopeTurns::GyroscopeTurns(const std::vector<InertialSample>& samples, const
 
 GyroscopeTurns::Turned GyroscopeTurns::after(const Turned& before, const InertialSample& from,
                                              const InertialSample& to) const {
-  const PreintegratedMotion step = preintegrate({}, from, to, bias_);
+  const double seconds = secondsBetween(from, to);
+  const Eigen::Quaterniond step = rotationExp(seconds * (0.5 * (from.rate + to.rate) - rate_bias_));
   Turned turned;
-  turned.rotation = (before.rotation * step.rotation).normalized();
-  turned.by_bias = step.rotation.conjugate() * before.by_bias + step.by_bias.topLeftCorner<3, 3>();
+  turned.rotation = (before.rotation * step).normalized();
+  turned.by_bias = step.conjugate() * before.by_bias - seconds * Eigen::Matrix3d::Identity();
   turned.gaps = before.gaps;
   return turned;
 }
@@ -50,12 +49,12 @@ std::optional<GyroscopeTurns::TurnedAt> GyroscopeTurns::at(std::int64_t time_ns)
   if (next == samples_.begin() || next == samples_.end()) return std::nullopt;
   const InertialSample& before = *(next - 1);
   const auto index = static_cast<std::size_t>(next - samples_.begin()) - 1;
-  if (before.time_ns == time_ns) return TurnedAt{until_[index], before.rate - bias_.rate};
+  if (before.time_ns == time_ns) return TurnedAt{until_[index], before.rate - rate_bias_};
   if (until_[index + 1].gaps > until_[index].gaps) return std::nullopt;
   InertialSample now = before;
   now.time_ns = time_ns;
   now.rate = interpolatedRate(before, *next, time_ns);
-  return TurnedAt{after(until_[index], before, now), now.rate - bias_.rate};
+  return TurnedAt{after(until_[index], before, now), now.rate - rate_bias_};
 }
 
 std::optional<GyroscopeTurn> GyroscopeTurns::between(std::int64_t from_ns, std::int64_t to_ns) const {

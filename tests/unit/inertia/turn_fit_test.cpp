@@ -1,9 +1,9 @@
 // The fit over turns: its derivatives, and whether it knows how well it knows.
-#include "calibration/turn_fit.h"
+#include "inertia/turn_fit.h"
 
 #include <gtest/gtest.h>
 
-#include "unit/calibration/turning_camera.h"
+#include "unit/inertia/turning_camera.h"
 
 namespace edgeslam::test {
 namespace {

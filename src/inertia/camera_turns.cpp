@@ -1,4 +1,4 @@
-#include "calibration/camera_turns.h"
+#include "inertia/camera_turns.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,18 +1,16 @@
-#include "calibration/turn_fit.h"
+#include "inertia/turn_fit.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/pose_errors.h"
-#include "calibration/turn_alignment.h"
 #include "geometry/rolling_shutter.h"
+#include "inertia/pose_errors.h"
 
 namespace edgeslam {
 namespace {
 
 constexpr int most_iterations = 20;
-constexpr std::size_t turn_unknowns = 7;
 
 struct TimedError {
   std::int64_t from_ns = 0;
@@ -98,11 +96,11 @@ std::optional<Matrix7d> inverseOf(const Matrix7d& information) {
 
 // Of what the parts add, each as independent of the others; larger by what the fit took up itself, and what it cannot
 // see.
-Matrix7d scatterOf(const std::vector<Vector7d>& gradients) {
+Matrix7d scatterOf(const std::vector<Vector7d>& gradients, std::size_t unknowns) {
   Matrix7d scatter = Matrix7d::Zero();
   for (const Vector7d& gradient : gradients) scatter += gradient * gradient.transpose();
   const double parts = static_cast<double>(gradients.size());
-  return unseen_times * unseen_times * parts / (parts - turn_unknowns) * scatter;
+  return unseen_times * unseen_times * parts / (parts - static_cast<double>(unknowns)) * scatter;
 }
 
 double coveredSeconds(const std::vector<TimedError>& errors) {
@@ -151,18 +149,23 @@ TurnError turnError(const TurnParameters& parameters, const CameraTurn& seen, co
 }
 
 std::optional<TurnFit> fitTurns(const std::vector<CameraTurn>& turns, const std::vector<InertialSample>& samples,
-                                const TurnParameters& start, double rate_walk) {
+                                const TurnParameters& start, double rate_walk, bool rotation_is_known) {
+  const std::size_t unknowns = rotation_is_known ? 4 : 7;
   TurnFit fit;
   fit.parameters = start;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const std::vector<TimedError> errors = errorsOf(turns, samples, fit.parameters);
+    std::vector<TimedError> errors = errorsOf(turns, samples, fit.parameters);
     if (errors.size() < fewest_turns) return std::nullopt;
+    if (rotation_is_known) {
+      for (TimedError& timed : errors) timed.turn.by_parameters.leftCols<3>().setZero();
+    }
     const std::vector<double> weights = weightsOf(errors);
-    const TurnEquations equations = turnEquations(errors, weights);
+    TurnEquations equations = turnEquations(errors, weights);
+    if (rotation_is_known) equations.information.topLeftCorner<3, 3>().setIdentity();
     const std::optional<Matrix7d> inverse = inverseOf(equations.information);
     const std::vector<Vector7d> gradients = gradientsOfParts(errors, weights);
-    if (!inverse || gradients.size() <= turn_unknowns) return std::nullopt;
-    const Matrix7d scatter = scatterOf(gradients) + gradientOfWalk(errors, weights, rate_walk);
+    if (!inverse || gradients.size() <= unknowns) return std::nullopt;
+    const Matrix7d scatter = scatterOf(gradients, unknowns) + gradientOfWalk(errors, weights, rate_walk);
     fit.covariance = *inverse * scatter * *inverse;
     fit.turns = errors.size();
     fit.seconds = coveredSeconds(errors);
