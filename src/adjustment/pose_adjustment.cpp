@@ -188,11 +188,21 @@ bool minimize(const ShutterAt& shutterAt, const PreparedObservations& observatio
   return pose.rotation.coeffs().allFinite() && pose.translation.allFinite();
 }
 
-// Inliers, rms and covariance at the final pose. `prior_information`: of the right-hand update there.
+// At the minimum of both the observations pull against the prior.
+Vector6d withoutPrior(const Matrix6d& information, const PoseEquations& prior) {
+  PoseEquations observed;
+  observed.information = information - prior.information;
+  observed.gradient = -prior.gradient;
+  Vector6d step;
+  if (!solveDamped(observed, 0, step)) step.setConstant(std::numeric_limits<double>::infinity());
+  return step;
+}
+
+// Inliers, rms and covariance at the final pose. `prior`: there.
 template <typename Shutter>
-bool judge(const Shutter& shutter, const PreparedObservations& observations, const Matrix6d& prior_information,
+bool judge(const Shutter& shutter, const PreparedObservations& observations, const PoseEquations& prior,
            const PoseOptions& options, PoseResult& result) {
-  Matrix6d information = prior_information;
+  Matrix6d information = prior.information;
   Eigen::Array2d weighted_squares = Eigen::Array2d::Zero();  // across the edge, along it
   double squares = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -211,6 +221,7 @@ bool judge(const Shutter& shutter, const PreparedObservations& observations, con
   }
   if (result.inlier_count < std::max(options.fewest, 4)) return false;
   result.rms = std::sqrt(squares / result.inlier_count);
+  if (!prior.information.isZero(0)) result.without_prior = withoutPrior(information, prior);
   const Vector6d scale = information.diagonal().cwiseSqrt();
   if (!(scale.minCoeff() > 0) || !scale.allFinite()) return false;
   const Vector6d unscale = scale.cwiseInverse();
@@ -265,7 +276,7 @@ PoseResult adjustPose(const Camera& camera, const Pose& initial_world_T_camera, 
   const auto adjust = [&](const auto& shutterAt) {
     Pose pose = initial_world_T_camera;
     result.converged = minimize(shutterAt, prepared, prior, options, pose) &&
-                       judge(shutterAt(pose), prepared, priorEquations(prior, pose).information, options, result);
+                       judge(shutterAt(pose), prepared, priorEquations(prior, pose), options, result);
     if (result.converged) result.world_T_camera = pose;
   };
   if (camera.readout_s == 0) {

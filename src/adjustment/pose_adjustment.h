@@ -68,6 +68,9 @@ struct PoseResult {
   int inlier_count = 0;
   std::pmr::vector<double> errors_across;  // whitened, across its edge; one an observation, infinite behind the camera
   double rms = 0;                          // of the inliers' whitened residual norms
+  // Right-hand update that takes the pose to where the observations have it without the prior; infinite where they do
+  // not tell it.
+  Vector6d without_prior = Vector6d::Zero();
 };
 
 // The pose is that of the middle row; where the camera reads its rows one after another, `motion` ties the other rows'

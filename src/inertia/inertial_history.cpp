@@ -16,7 +16,7 @@ bool isUsable(const InertialSample& sample) {
          sample.force.cwiseAbs().maxCoeff() <= largest_force;
 }
 
-InertialHistory::InertialHistory(const InertialUnit& unit) : unit_(unit), samples_(most_samples) {}
+InertialHistory::InertialHistory(const InertialUnit& unit, std::size_t most) : unit_(unit), samples_(most) {}
 
 bool InertialHistory::add(const InertialSample& sample) {
   if (!isUsable(sample) || !samples_.isNext(sample.time_ns)) return false;

@@ -13,10 +13,12 @@ bool isUsable(const InertialSample& sample);
 
 class InertialHistory {
  public:
-  // Takes all its memory at once.
-  explicit InertialHistory(const InertialUnit& unit);
+  // Takes all its memory at once, for so many samples.
+  explicit InertialHistory(const InertialUnit& unit, std::size_t most = most_samples);
 
   const InertialUnit& unit() const { return unit_; }
+  // From now on, of all that was measured.
+  void setOffset(std::int64_t offset_ns) { unit_.offset_ns = offset_ns; }
 
   // In the order in which they come. False where it cannot be used and is left out: not finite, beyond what any unit
   // measures, or its time stamp not after the one before. Where many in a row are older, the clock was set back: what

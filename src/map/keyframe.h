@@ -9,6 +9,7 @@
 #include "geometry/measurement.h"
 #include "geometry/rolling_shutter.h"
 #include "geometry/uncertainty.h"
+#include "inertia/camera_turns.h"
 #include "inertia/preintegration.h"
 #include "map/keyframe_images.h"
 #include "map/map_line.h"
@@ -35,6 +36,7 @@ struct PointObservation {
 struct InertialLink {
   KeyframeId from = -1;  // -1: it was not measured all the way
   PreintegratedMotion motion;
+  std::int64_t offset_ns = 0;  // of the unit's clock from the camera's, as it was taken to be
 };
 
 // What a frame on its way to mapping is there for.
@@ -66,6 +68,10 @@ struct TrackedFrame {
   std::int64_t start = -1;  // of a frame that helps a start: the first frame that its pose is against
   InertialLink inertia;     // of a keyframe; of a frame that helps a start, since that start's first frame
   OdometryPlace wheels;     // where the wheels say that it is
+  // Of a keyframe: what came since the one before, as far as there was room for it. How the camera turned from frame to
+  // frame is as it was seen, whatever inertia says.
+  std::vector<InertialSample> felt;
+  std::vector<CameraTurn> turns;
 };
 
 struct Keyframe {

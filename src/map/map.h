@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/found_camera.h"
+#include "inertia/found_time_offset.h"
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
 #include "wheels/wheel_scale.h"
@@ -27,12 +28,13 @@ struct MapPoint {
 
 struct Map {
   KeyframeTable<Keyframe> keyframes;
-  std::map<PointId, MapPoint> points;        // ordered, so that every sum over them is the same in every run
-  std::map<LineId, MapLine> lines;           // likewise
-  LineId next_line = 0;                      // no number is given twice
-  std::map<int, InertialAlignment> inertia;  // by world, where there is an inertial unit
-  std::map<int, WheelScale> wheels;          // by world, where there are wheels
-  FoundCamera found;                         // what all rays here were taken with
+  std::map<PointId, MapPoint> points;          // ordered, so that every sum over them is the same in every run
+  std::map<LineId, MapLine> lines;             // likewise
+  LineId next_line = 0;                        // no number is given twice
+  std::map<int, InertialAlignment> inertia;    // by world, where there is an inertial unit
+  std::map<int, WheelScale> wheels;            // by world, where there are wheels
+  FoundCamera found;                           // what all rays here were taken with
+  std::optional<FoundTimeOffset> time_offset;  // that links were measured with, where it is not the one that was given
 };
 
 // A keyframe to read, of a map that may be changed too.

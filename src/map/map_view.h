@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/found_camera.h"
+#include "inertia/found_time_offset.h"
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
 #include "wheels/wheel_scale.h"
@@ -43,9 +44,10 @@ struct MapView {
   std::int64_t corrections = 0;    // of the map as a whole: loops, worlds that were joined
   bool initialised = false;        // false: a provisional, flat-depth map from the first frame; poses are not given out
   std::string waiting_for;         // why not, in words that a user understands
-  std::optional<InertialAlignment> inertia;  // of the world, where there is an inertial unit
-  WheelScale wheels;                         // of the world
-  FoundCamera found;                         // of the camera, beside its calibration
+  std::optional<InertialAlignment> inertia;    // of the world, where there is an inertial unit
+  WheelScale wheels;                           // of the world
+  FoundCamera found;                           // of the camera, beside its calibration
+  std::optional<FoundTimeOffset> time_offset;  // of the inertial unit's clock, where it is not the one that was given
   KeyframeTable<ViewKeyframe> keyframes;
   std::vector<ViewPoint> points;  // sorted by id
 };

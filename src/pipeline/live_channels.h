@@ -36,8 +36,9 @@ constexpr std::chrono::milliseconds idle_time{1};  // before a thread looks agai
 enum class Stopping { no, settle, at_once };
 
 struct LiveChannels {
-  // Frames of this size [px]; messages and results that hold so many observations without taking memory.
-  LiveChannels(int width, int height, std::size_t observations);
+  // Frames of this size [px]; messages and results that hold so many observations, and what an inertial unit measures,
+  // without taking memory.
+  LiveChannels(int width, int height, std::size_t observations, bool has_inertia);
 
   FrameSlots frames;                                          // capture to tracking
   boost::lockfree::spsc_queue<InertialSample> inertia{4096};  // from outside to tracking: a second of the fastest units

@@ -29,7 +29,8 @@ LiveOptions liveOptions(const ThreadOptions& options) {
 LiveRun::LiveRun(const Camera& camera, const Settings& settings, const LiveOptions& options, LiveObserver observer,
                  DecisionSink* sink)
     : options_(options),
-      channels_(camera.width, camera.height, static_cast<std::size_t>(settings.points.count)),
+      channels_(camera.width, camera.height, static_cast<std::size_t>(settings.points.count),
+                settings.tracking.inertia.has_value()),
       tracking_(camera, settings, channels_, sink),
       mapping_(camera, settings, channels_, tracking_),
       places_(camera, settings, channels_),

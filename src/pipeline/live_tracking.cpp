@@ -13,8 +13,7 @@ constexpr std::size_t least_room = 8;  // in mapping's queue, for a frame to tel
 LiveTracking::LiveTracking(const Camera& camera, const Settings& settings, LiveChannels& channels, DecisionSink* sink)
     : channels_(channels), sink_(sink), worker_(camera, settings) {
   for (MappingMessage& message : new_messages_.all()) {
-    message.frame.observations.reserve(static_cast<std::size_t>(settings.points.count));
-    message.frame.straight_edges.reserve(static_cast<std::size_t>(settings.points.count));
+    reserve(static_cast<std::size_t>(settings.points.count), settings.tracking.inertia.has_value(), message.frame);
   }
 }
 

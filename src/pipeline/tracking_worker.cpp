@@ -19,8 +19,7 @@ TrackingWorker::TrackingWorker(const Camera& camera, const Settings& settings)
       tracker_(camera, settings.edges, settings.points, settings.tracking) {
   reserve(static_cast<std::size_t>(settings.points.count), result_);
   for (std::string* text : {&not_found_, &start_reason_}) text->reserve(longest_reason);
-  for_mapping_.observations.reserve(static_cast<std::size_t>(settings.points.count));
-  for_mapping_.straight_edges.reserve(static_cast<std::size_t>(settings.points.count));
+  reserve(static_cast<std::size_t>(settings.points.count), settings.tracking.inertia.has_value(), for_mapping_);
 }
 
 void TrackingWorker::take(MapUpdate& update) {

@@ -21,13 +21,16 @@ struct FollowedFrame {
   Twist twist = Twist::Zero();             // of the camera as its rows were read; 0 where they are read at once
   Matrix6d covariance = Matrix6d::Zero();  // of the right-hand update [translation; rotation], in the map as it is
   PosePrior known;                         // of its pose before anything was measured in it
-  int inlier_count = 0;                    // map points that agree with the pose
-  double outlier_share = 0;                // of the map points in view
-  double scene_depth = 1;                  // median distance of the map points that the last frame saw [map units]
-  bool position_is_held = false;           // the map does not tell it (orientation_only.h)
-  bool is_by_wheels = false;               // its pose is by the wheels alone
-  OdometryPlace wheels;                    // where the wheels say that it is
-  NoiseEvidence noise;                     // what the map points in view say, be the pose believed or not
+  // From the pose to where what was seen has its rotation without what was known: applied on the right; not finite
+  // where nothing has.
+  Eigen::Vector3d seen_turn = Eigen::Vector3d::Zero();
+  int inlier_count = 0;           // map points that agree with the pose
+  double outlier_share = 0;       // of the map points in view
+  double scene_depth = 1;         // median distance of the map points that the last frame saw [map units]
+  bool position_is_held = false;  // the map does not tell it (orientation_only.h)
+  bool is_by_wheels = false;      // its pose is by the wheels alone
+  OdometryPlace wheels;           // where the wheels say that it is
+  NoiseEvidence noise;            // what the map points in view say, be the pose believed or not
 
   // False before the first frame, and after forget().
   bool isThere() const { return images != nullptr; }

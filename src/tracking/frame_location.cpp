@@ -97,6 +97,8 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   frame.world_T_camera = pose->result.world_T_camera;
   frame.twist = pose->result.twist;
   frame.covariance = pose->result.covariance;
+  frame.seen_turn.setZero();
+  if (!frame.position_is_held) frame.seen_turn = pose->result.without_prior.tail<3>();
   frame.inlier_count = pose->result.inlier_count;
   // Of the few map points that a held position leaves in view, the share says nothing.
   const auto in_view = frame.position_is_held ? 0 : static_cast<double>(pose->track_of_observation.size());

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geometry/squared.h"
+#include "inertia/found_time_offset.h"
 
 namespace edgeslam {
 namespace {
@@ -11,6 +12,13 @@ constexpr double longest_for_speed_s = 0.35, shortest_for_speed_s = 0.05;
 // What is known no better, whatever the covariances say: gravity against the camera, and how units err beyond noise.
 constexpr double tilt_sigma = 3e-3;         // [rad]
 constexpr double least_speed_sigma = 0.01;  // [m/s]
+
+// Of too many the older half goes.
+template <typename Value>
+void keep(const Value& value, std::size_t most, std::vector<Value>& values) {
+  if (values.size() == most) values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(most / 2));
+  values.push_back(value);
+}
 
 double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return static_cast<double>(to_ns - from_ns) * 1e-9; }
 
@@ -25,10 +33,27 @@ InertialMotion::InertialMotion(const std::optional<InertialUnit>& unit) {
   if (!unit) return;
   history_.emplace(*unit);
   camera_T_imu_ = unit->imu_T_camera.inverse();
+  felt_.reserve(most_felt);
+  turns_.reserve(most_turns);
 }
 
 void InertialMotion::add(const InertialSample& sample) {
-  if (history_) history_->add(sample);
+  if (history_ && history_->add(sample)) keep(sample, most_felt, felt_);
+}
+
+void InertialMotion::observeTurn(const CameraTurn& turn) {
+  if (history_ && turn.rotation.coeffs().allFinite()) keep(turn, most_turns, turns_);
+}
+
+void InertialMotion::tell(TrackedFrame& keyframe) {
+  std::swap(keyframe.felt, felt_);
+  std::swap(keyframe.turns, turns_);
+  felt_.clear();
+  turns_.clear();
+}
+
+void InertialMotion::setOffset(std::int64_t offset_ns) {
+  if (history_) history_->setOffset(offset_ns);
 }
 
 void InertialMotion::observe(const TimedCamera& last, const TimedCamera& camera, double sigma) {
@@ -120,7 +145,7 @@ std::optional<InertialTurn> InertialMotion::turnBetween(std::int64_t from_ns, st
 InertialLink InertialMotion::linkUpTo(std::int64_t time_ns, const std::optional<InertialAlignment>& alignment) const {
   if (!history_ || last_keyframe_ < 0) return {};
   const auto motion = history_->between(keyframe_ns_, time_ns, alignment ? alignment->bias : InertialBias{});
-  return motion ? InertialLink{last_keyframe_, *motion} : InertialLink{};
+  return motion ? InertialLink{last_keyframe_, *motion, history_->unit().offset_ns} : InertialLink{};
 }
 
 InertialLink InertialMotion::linkTo(KeyframeId keyframe, std::int64_t time_ns,
@@ -131,7 +156,7 @@ InertialLink InertialMotion::linkTo(KeyframeId keyframe, std::int64_t time_ns,
 }
 
 void InertialMotion::beginStart(KeyframeId first, std::int64_t time_ns) {
-  since_start_ = {first, PreintegratedMotion()};
+  since_start_ = {first, PreintegratedMotion(), history_ ? history_->unit().offset_ns : 0};
   start_ns_ = time_ns;
 }
 

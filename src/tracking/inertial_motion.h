@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "adjustment/pose_adjustment.h"
 #include "inertia/inertial_alignment.h"
@@ -38,6 +39,8 @@ class InertialMotion {
   // Every frame that was located, after `last` where the map has it now; `sigma`: standard deviation of its place [map
   // units].
   void observe(const TimedCamera& last, const TimedCamera& camera, double sigma);
+  // How the camera turned between two frames in a row, as it was seen; nothing where it is not finite.
+  void observeTurn(const CameraTurn& turn);
   // Lengths are in another unit, or the place is another one, from now on.
   void forget() { located_.forget(); }
 
@@ -60,6 +63,11 @@ class InertialMotion {
   // The next link is from this one.
   void linkFrom(KeyframeId keyframe, std::int64_t time_ns);
   void forgetLink() { last_keyframe_ = -1; }
+  // Gives a keyframe what came since the one before, and takes its memory.
+  void tell(TrackedFrame& keyframe);
+
+  // The clocks were found to differ by so much.
+  void setOffset(std::int64_t offset_ns);
 
  private:
   struct Located {
@@ -81,6 +89,9 @@ class InertialMotion {
   std::int64_t keyframe_ns_ = 0;
   InertialLink since_start_;  // as far as it was asked for
   std::int64_t start_ns_ = 0;
+  // Since the last keyframe was told.
+  std::vector<InertialSample> felt_;
+  std::vector<CameraTurn> turns_;
 };
 
 }  // namespace edgeslam

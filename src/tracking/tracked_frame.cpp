@@ -1,5 +1,7 @@
 #include "tracking/tracked_frame.h"
 
+#include "inertia/found_time_offset.h"
+
 namespace edgeslam {
 void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole& role, TrackedFrame& description) {
   description.frame_index = frame.images->frame_index;
@@ -16,6 +18,8 @@ void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole&
   description.wheels = frame.wheels;
   description.images = role.kind == FrameKind::start ? nullptr : frame.images;
   description.straight_edges.assign(frame.straight_edges.begin(), frame.straight_edges.end());
+  description.felt.clear();
+  description.turns.clear();
   description.observations.clear();
   for (const Track& track : frame.tracks) {
     const int straight_edge = frame.straight_edges.empty() ? -1 : track.straight_edge;
@@ -25,6 +29,14 @@ void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole&
     description.observations.push_back(
         {track.id, measurement, ray.direction, track.corner, track.chain, track.order, straight_edge});
   }
+}
+
+void reserve(std::size_t observations, bool has_inertia, TrackedFrame& description) {
+  description.observations.reserve(observations);
+  description.straight_edges.reserve(observations);
+  if (!has_inertia) return;
+  description.felt.reserve(most_felt);
+  description.turns.reserve(most_turns);
 }
 
 Track trackOf(const FoundAgain& found) {

@@ -1,6 +1,8 @@
 // What tracking hands to mapping, and what it gets back of a frame that was lost: frames and tracks as values.
 #pragma once
 
+#include <cstddef>
+
 #include "geometry/camera.h"
 #include "map/keyframe.h"
 #include "tracking/followed_frame.h"
@@ -19,6 +21,9 @@ struct FrameRole {
 
 // Writes over `description`, with its memory. A frame that only helps a start has no images in it.
 void describe(const Camera& camera, const FollowedFrame& frame, const FrameRole& role, TrackedFrame& description);
+
+// Gives it memory for so many observations, and for what an inertial unit measures.
+void reserve(std::size_t observations, bool has_inertia, TrackedFrame& description);
 
 // A map point found again in a frame whose pose was lost.
 struct FoundAgain {

@@ -67,7 +67,7 @@ Tracker::Tracker(const Camera& camera, const EdgeOptions& edges, const PointChoi
 
 void Tracker::startLost(const MapView& view, PointId first_free_point) {
   view_ = view;
-  takeCamera(view.found);
+  takeFound(view);
   worlds_ = 1;
   last_world_ = view.world;
   keyframes_.goOnFrom(view.latest_keyframe + 1, first_free_point);
@@ -313,6 +313,7 @@ void Tracker::becomeKeyframe(FollowedFrame& frame, const char* reason, Work& wor
   keepStraightEdges(camera_, straight, noise_.factor(), frame, &scratch_);
   describe(camera_, frame, {FrameKind::keyframe, id, reason, noise_.factor(), view_.world}, work.for_mapping);
   work.for_mapping.inertia = motion_.inertia().linkTo(id, frame.images->time_ns, view_.inertia);
+  motion_.inertia().tell(work.for_mapping);
   // Until mapping answers, the keyframe stands where tracking saw it.
   view_.keyframes.push_back({id, frame.world_T_camera, nullptr, Matrix7d::Zero(), frame.twist});
   work.clock.finished(Stage::choice_of_points);
@@ -542,10 +543,11 @@ void Tracker::resume(MapView& view, const Pose& world_T_camera, const Matrix6d& 
   last_.twist.setZero();
   last_.covariance = covariance;
   last_.known = {};
+  last_.seen_turn.setZero();
   std::swap(view_, view);
   last_.inlier_count = countInMap(view_, last_.tracks);
   last_was_found_again_ = true;
-  takeCamera(view_.found);
+  takeFound(view_);
   last_.is_by_wheels = false;
   motion_.goOnFrom(last_);
   if (view_.keyframes.contains(kept_number_)) motion_.inertia().linkFrom(kept_number_, last_.images->time_ns);
@@ -566,9 +568,10 @@ void Tracker::keepConfirmation(const MapView& view, bool by_tracks) {
   confirmation_.askForProof();
 }
 
-// Mapping found the camera to be another one than its calibration says.
-void Tracker::takeCamera(const FoundCamera& found) {
-  const Camera camera = withFound(calibrated_, found);
+// Mapping found the camera to be another one than its calibration says, or the clocks to differ.
+void Tracker::takeFound(const MapView& view) {
+  if (view.time_offset) motion_.inertia().setOffset(view.time_offset->offset_ns);
+  const Camera camera = withFound(calibrated_, view.found);
   if (camera == camera_) return;
   camera_ = camera;
   location_.setCamera(camera);
@@ -603,7 +606,7 @@ void Tracker::adopt(MapView& view) {
     motion_.forgetWheels();
   }
   std::swap(view_, view);
-  takeCamera(view_.found);
+  takeFound(view_);
   centre_ = view_.centre;  // what was asked for meanwhile is asked for once more
   tracks_at_reuse_ = 0;
   motion_.scale(new_S_old->scale);
@@ -626,6 +629,7 @@ void Tracker::adopt(MapView& view) {
       estimatePose(camera_, view_, last_.tracks, moved_pose, options_.location.pose, &scratch_, motion, last_.known);
   const bool is_measured = again.result.converged && !last_.is_by_wheels;
   last_.world_T_camera = is_measured ? again.result.world_T_camera : moved_pose;
+  if (is_measured && !last_.position_is_held) last_.seen_turn = again.result.without_prior.tail<3>();
 }
 
 }  // namespace edgeslam

@@ -160,7 +160,7 @@ class Tracker {
   void goOnBy(std::string_view by, FrameResult& result) const;
   void lose(Work& work);
   void keepConfirmation(const MapView& view, bool by_tracks);
-  void takeCamera(const FoundCamera& found);
+  void takeFound(const MapView& view);
   void linkFromLatestKeyframe();
   void beLostSince(std::int64_t time_ns);
   void beFound();

@@ -15,6 +15,10 @@ double secondsSince(const FollowedFrame& frame, std::int64_t time_ns) {
   return static_cast<double>(time_ns - frame.images->time_ns) * 1e-9;
 }
 
+Eigen::Quaterniond seenRotation(const FollowedFrame& frame) {
+  return frame.world_T_camera.rotation * rotationExp(frame.seen_turn);
+}
+
 bool isWithin(const Matrix6d& covariance, double largest_position_deviation, double largest_rotation_deviation) {
   return std::sqrt(covariance.diagonal().head<3>().maxCoeff()) <= largest_position_deviation &&
          std::sqrt(covariance.diagonal().tail<3>().maxCoeff()) <= largest_rotation_deviation;
@@ -26,6 +30,10 @@ void UnseenMotion::observe(const FollowedFrame& last, const FollowedFrame& now, 
   motion_.observe(cameraOf(last), cameraOf(now));
   inertia_.observe(cameraOf(last), cameraOf(now), sigma);
   if (now.is_by_wheels) return;
+  if (view.initialised && !last.is_by_wheels) {
+    inertia_.observeTurn(
+        {last.images->time_ns, now.images->time_ns, (seenRotation(last).conjugate() * seenRotation(now)).normalized()});
+  }
   wheels_.observe(cameraOf(last), cameraOf(now), now.covariance, view.wheels);
   located_place_ = now.wheels;
   located_covariance_ = now.covariance;

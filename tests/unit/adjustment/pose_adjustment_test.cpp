@@ -399,6 +399,24 @@ TEST(PoseAdjustment, APriorOfTheRotationCountsLikewise) {
   EXPECT_LT(poseError(weak.world_T_camera, without.world_T_camera).norm(), 1e-6);
 }
 
+TEST(PoseAdjustment, TellsWhereThePoseWouldBeWithoutThePrior) {
+  Random random(19);
+  const Trial trial = makeTrial(random, {});
+  const PoseResult without = adjustPose(trial.camera, trial.truth, trial.observations, {});
+  EXPECT_TRUE(without.without_prior.isZero(0));
+  const Vector6d off = (Vector6d() << 2e-3, -1e-3, 1e-3, 4e-4, -3e-4, 5e-4).finished();
+  for (const double sigma_rad : {1e-4, 1e-3}) {
+    const PosePrior prior = priorOf(retract(trial.truth, off), 10 * sigma_rad, sigma_rad);
+    const PoseResult with =
+        adjustPose(trial.camera, trial.truth, trial.observations, {}, std::pmr::get_default_resource(), {}, prior);
+    ASSERT_TRUE(with.converged);
+    const double apart = poseError(with.world_T_camera, without.world_T_camera).norm();
+    EXPECT_GT(apart, 1e-5) << "the prior counts";
+    EXPECT_LT(poseError(retract(with.world_T_camera, with.without_prior), without.world_T_camera).norm(), 0.15 * apart)
+        << sigma_rad;
+  }
+}
+
 TEST(PoseAdjustment, DerivativesOfAPriorAreTheNumericOnes) {
   Random random(17);
   for (int run = 0; run < 10; ++run) {
