@@ -22,6 +22,7 @@
 #include "configuration/input_configuration.h"
 #include "files/format_text.h"
 #include "frames/frame_problem.h"
+#include "inertia/found_time_offset.h"
 #include "map/saved_map.h"
 #include "pipeline/lockstep_run.h"
 #include "recording/open_frame_source.h"
@@ -91,7 +92,8 @@ void requireReadoutWithin(const Camera& camera, double frame_interval_s) {
 
 void processAll(FrameSource& source, const Camera& camera, const MeasuredBeside& measured, const Settings& settings,
                 const MemoryReserve& reserve, LockstepRun& run) {
-  SampleFeed inertia(measured.inertia, settings.tracking.inertia ? settings.tracking.inertia->offset_ns : 0);
+  const std::int64_t offset_ns = settings.tracking.inertia ? settings.tracking.inertia->offset_ns : 0;
+  SampleFeed inertia(measured.inertia, offset_ns + farthest_time_offset_ns);  // it may be found to be later
   SampleFeed wheels(measured.wheels);
   ReplayProgress progress(source.size());
   std::int64_t count = 0, first_ns = 0;

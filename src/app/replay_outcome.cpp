@@ -58,6 +58,11 @@ void tellCamera(const RunResult& result) {
 }
 
 void tellInertia(const RunResult& result) {
+  if (result.time_offset) {
+    const double offset_s = 1e-9 * static_cast<double>(result.time_offset->offset_ns);
+    std::printf("found on the way: the inertial unit's clock differs by %.1f ms +- %.1f (time_offset_s: %.4f)\n",
+                1e3 * offset_s, 1e3 * result.time_offset->sigma_s, offset_s);
+  }
   const auto known = result.inertia.find(result.main_world);
   if (known != result.inertia.end()) {
     std::printf("lengths are metres (+- %.1f %%), and z is up, by inertia\n", 100 * known->second.scale_sigma);

@@ -6,10 +6,13 @@
 #include "geometry/median.h"
 #include "mapping/line_association.h"
 #include "mapping/line_placement.h"
+#include "mapping/links_anew.h"
 #include "mapping/wheel_turn_check.h"
 
 namespace edgeslam {
 namespace {
+
+constexpr std::int64_t little_offset_ns = 1'500'000;  // a change of the unit's clock that bends no map
 
 // Of recovered points, at least one, from the keyframe that hosts them [map units].
 double medianDistance(const std::vector<RecoveredPoint>& points) {
@@ -159,6 +162,7 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   placeLines(camera_, options_.local_adjustment.lines, map_);
   adjustLocally(camera_, options_.local_adjustment, map_);
   findCamera();
+  findTimeOffset(frame);
   alignToEarth();
   scaleByWheels();
   const std::vector<CulledKeyframe> culled = cullKeyframes(options_.culling, map_, candidates_);
@@ -178,6 +182,35 @@ void Mapper::findCamera() {
 void Mapper::takeCamera(const Camera& camera) {
   camera_ = camera;
   initialisation_.setCamera(camera);
+}
+
+// Told to tracking by the view. What comes too late to be of use with it stays as it is.
+void Mapper::findTimeOffset(const TrackedFrame& keyframe) {
+  if (!time_offset_finding_) return;
+  time_offset_finding_->add(keyframe.time_ns, keyframe.felt, keyframe.turns);
+  const std::optional<FoundTimeOffset>& found = time_offset_finding_->found();
+  if (!found || (!map_.time_offset && !time_offset_finding_->comesInTime())) return;
+  InertialUnit unit = *options_.local_adjustment.inertia;
+  const std::int64_t before_ns = map_.time_offset ? map_.time_offset->offset_ns : unit.offset_ns;
+  unit.offset_ns = found->offset_ns;
+  map_.time_offset = found;
+  takeLinksAnew(unit, time_offset_finding_->samples(), map_);
+  if (std::abs(found->offset_ns - before_ns) > little_offset_ns) alignAnew();
+}
+
+// Where links were far off, the map is adjusted by the right ones, and how it lies to the earth is found once more.
+void Mapper::alignAnew() {
+  adjustGlobally(camera_, options_.global_adjustment, options_.local_adjustment, map_);
+  renewUncertainty(camera_, options_.uncertainty, map_);
+  ++corrections_;
+  InertialAlignment& alignment = map_.inertia[world_];
+  const InertialAlignment before = alignment;
+  alignment = {};
+  alignToEarth();
+  if (!before.is_known || alignment.is_known) return;
+  alignment = before;
+  alignment.scale_sigma = std::max(before.scale_sigma, options_.inertial_alignment.largest_scale_sigma);
+  alignment.adjusted_scale_sigma = 1;
 }
 
 const InertialAlignment* Mapper::knownAlignment() const {
@@ -322,6 +355,7 @@ MapView Mapper::view(KeyframeId centre) const {
   }
   view.initialised = initialised_;
   view.found = map_.found;
+  view.time_offset = map_.time_offset;
   view.version = version_;
   view.corrections = corrections_;
   view.origin_frame = origin_frame_;

@@ -16,6 +16,7 @@
 #include "mapping/local_adjustment.h"
 #include "mapping/map_uncertainty.h"
 #include "mapping/new_points.h"
+#include "mapping/time_offset_finding.h"
 #include "mapping/track_loss_recovery.h"
 #include "mapping/view_of_map.h"
 #include "mapping/wheel_scale_estimate.h"
@@ -59,7 +60,9 @@ class Mapper {
         camera_(camera),
         options_(options),
         initialisation_(camera, options.initialisation),
-        camera_finding_(options.camera_finding) {}
+        camera_finding_(options.camera_finding) {
+    if (options.local_adjustment.inertia) time_offset_finding_.emplace(*options.local_adjustment.inertia);
+  }
 
   // Before the first frame: continues a map made earlier, of the same camera.
   void goOnWith(Map map);
@@ -107,6 +110,10 @@ class Mapper {
   // The camera with what was found of it, and whether nothing more is looked for.
   const Camera& camera() const { return camera_; }
   bool cameraIsSettled() const { return camera_finding_.isSettled(); }
+  // How the clocks of the unit and the camera differ, where that is not as it was given; also where it comes too late.
+  std::optional<FoundTimeOffset> foundTimeOffset() const {
+    return time_offset_finding_ ? time_offset_finding_->found() : std::nullopt;
+  }
   // Poses of the frames before their maps stood, with the worlds as they are now.
   std::vector<EarlyPose> earlyPoses() const;
 
@@ -127,6 +134,8 @@ class Mapper {
   bool addKeyframe(const TrackedFrame& frame);
   void findCamera();
   void takeCamera(const Camera& camera);
+  void findTimeOffset(const TrackedFrame& keyframe);
+  void alignAnew();
   void alignToEarth();
   void scaleByWheels();
   void alignWithMap(const InertialAlignment& start);
@@ -136,6 +145,7 @@ class Mapper {
   MapperOptions options_;
   Initialisation initialisation_;
   CameraFinding camera_finding_;
+  std::optional<TimeOffsetFinding> time_offset_finding_;  // where there is an inertial unit
   Map map_;
   Candidates candidates_;
   std::string first_description_, description_;

@@ -74,6 +74,7 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
                                     known->metres_a_unit, 100 * known->scale_sigma));
   }
   tellOfCamera();
+  tellOfTimeOffset();
   if (const std::string lacking = lackingForMetres(); lacking != lacking_for_metres_) {
     report(last_frame_).lacking_for_metres = lacking_for_metres_ = lacking;
   }
@@ -118,6 +119,20 @@ void MappingWorker::tellOfCamera() {
                                     "the camera",
                                     mapper_.camera().distortion[0], mapper_.camera().distortion[1]));
   }
+}
+
+void MappingWorker::tellOfTimeOffset() {
+  constexpr std::int64_t worth_telling_ns = 1'000'000;
+  const std::optional<FoundTimeOffset> found = mapper_.foundTimeOffset();
+  if (!found || (told_offset_ns_ && std::abs(found->offset_ns - *told_offset_ns_) < worth_telling_ns)) return;
+  told_offset_ns_ = found->offset_ns;
+  const double offset_s = 1e-9 * static_cast<double>(found->offset_ns);
+  MappingReport& told = report(last_frame_);
+  told.is_of_setup = true;
+  told.events.push_back(formatted(
+      "the inertial unit's clock differs from the camera's by %.1f ms +- %.1f: with time_offset_s: %.4f beside "
+      "imu_T_camera this is known from the start",
+      1e3 * offset_s, 1e3 * found->sigma_s, offset_s));
 }
 
 // Either will do; wheels know them sooner.

@@ -44,6 +44,7 @@ class MappingWorker {
   static MapperOptions mapperOptions(const Settings& settings);
   void updateRelocalisation();
   void tellOfCamera();
+  void tellOfTimeOffset();
   void find(const MappingMessage& message);
   bool recover(const MappingMessage& message);
   void relocalise(const MappingMessage& message);
@@ -67,8 +68,9 @@ class MappingWorker {
   Pose found_reference_T_camera_;
   std::string not_found_;
   std::int64_t next_update_ = 0;
-  std::string lacking_for_metres_;  // that was reported
-  FoundCamera told_camera_;         // what was last said to be another than the calibration's
+  std::string lacking_for_metres_;              // that was reported
+  FoundCamera told_camera_;                     // what was last said to be another than the calibration's
+  std::optional<std::int64_t> told_offset_ns_;  // likewise
   std::vector<MappingReport> reports_;
 };
 

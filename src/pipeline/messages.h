@@ -95,6 +95,7 @@ struct MappingReport {
   std::int64_t frame_index = 0;
   std::optional<Found> found;  // the frame was lost, and then it was not
   std::vector<std::string> events;
+  bool is_of_setup = false;  // the events say what is to be configured otherwise
   // Where it changed: why the map's own metres, by inertia or the wheels, are not known; empty: they are, or neither is
   // there.
   std::optional<std::string> lacking_for_metres;

@@ -129,6 +129,12 @@ ordered_json worldsJson(const RunSummary& summary) {
   return worlds;
 }
 
+// Null: none was found, or it is as it was given.
+ordered_json timeOffsetJson(const std::optional<FoundTimeOffset>& found) {
+  if (!found) return nullptr;
+  return {{"time_offset_s", 1e-9 * static_cast<double>(found->offset_ns)}, {"sigma_s", found->sigma_s}};
+}
+
 }  // namespace
 
 RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& ground_truth) {
@@ -224,6 +230,7 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
           {"map_points", summary.worlds.front().map_points},
           {"map_lines", summary.worlds.front().map_lines},
           {"initialisation", result.initialisation},
+          {"imu_time_offset", timeOffsetJson(result.time_offset)},
           {"recoveries", result.recoveries},
           {"relocalisations", result.relocalisations},
           {"loops", result.closed_loops.size()},

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "frames/frame_problem.h"
+#include "inertia/found_time_offset.h"
 #include "map/saved_map.h"
 #include "pipeline/live_run.h"
 #include "pipeline/run_record.h"
@@ -45,7 +46,7 @@ void keepMap(const Map& map, const Camera& camera, const std::string& folder) {
 // Each frame at its time, and before it what was measured until then; up to the last one, or the end asked for.
 void feed(FrameSource& source, const Camera& camera, const LiveReplay& replay, std::int64_t imu_offset_ns,
           LiveRun& run) {
-  SampleFeed inertia(replay.inertia, imu_offset_ns);
+  SampleFeed inertia(replay.inertia, imu_offset_ns + farthest_time_offset_ns);  // it may be found to be later
   SampleFeed wheels(replay.wheels);
   std::optional<Clock::time_point> start;
   std::int64_t first_ns = 0;

@@ -3,7 +3,7 @@
 namespace edgeslam {
 
 void RunLog::report(const MappingReport& report) {
-  if (!report.found && !report.loop) return;
+  if (!report.found && !report.loop && !report.is_of_setup) return;
   for (const std::string& event : report.events) {
     log_.tell("frame " + std::to_string(report.frame_index) + ": " + event);
   }

@@ -16,7 +16,7 @@ class RunLog {
   // `log` outlives it.
   explicit RunLog(EventLog& log) : log_(log) {}
 
-  // Loops, and frames that were found again.
+  // Loops, frames that were found again, and what is to be configured otherwise.
   void report(const MappingReport& report);
   // The camera is in another world from this frame on.
   void tellWorld(std::int64_t frame_index, const std::string& change);

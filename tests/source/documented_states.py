@@ -25,7 +25,9 @@ SOURCES = {
         "the focal length is not that of the calibration, but %.1f pixels: calibrate the camera",
         "the principal point is not that of the calibration, but cx: %.1f, cy: %.1f pixels: calibrate the camera",
         "the distortion is not that of the calibration, but k1: %.4f, k2: %.4f: calibrate the camera",
-        "the inertial unit tells metres and upright: a map unit is %.3f m +- %.1f %%"],
+        "the inertial unit tells metres and upright: a map unit is %.3f m +- %.1f %%",
+        "the inertial unit's clock differs from the camera's by %.1f ms +- %.1f: with time_offset_s: %.4f beside "
+        "imu_T_camera this is known from the start"],
     "src/mapping/initialisation.cpp": [" from frame ", " to frame ", ", "],  # what the start was
     "src/mapping/initialisation.h": [],
     "src/mapping/initial_judgement.cpp": ["quality ", " edge pieces, parallax ", " deg, ", " points"],  # likewise
