@@ -19,6 +19,7 @@ constexpr double least_sigmas = 5;                                   // of what 
 constexpr int agreeing_looks = 3;                                    // in a row, ...
 constexpr double agreement_s = 2e-3;                                 // ... within this, or ...
 constexpr double alike_offsets = 0.25;                               // ... this of what they say
+constexpr double bends_s = 1e-3;                                     // change that tells in the map
 constexpr double too_little_s = 3e-4;                                // change of what was found
 
 double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return 1e-9 * static_cast<double>(to_ns - from_ns); }
@@ -81,6 +82,9 @@ bool TimeOffsetFinding::look() {
       estimateTimeOffset(frames_, {begin, samples_.end()}, unit_, given_s, farthest_s);
   if (!estimate || estimate->seconds < shortest_looked_at_s || !(estimate->sigma_s < known_offset_s)) return false;
   if (!isToChange(*estimate)) return false;
+  // Frames were posed in a map that the gyroscope has bent towards the offset that was.
+  const double now_s = 1e-9 * static_cast<double>(found_ ? found_->offset_ns : unit_.offset_ns);
+  if (std::abs(estimate->offset_s - now_s) > bends_s) frames_.clear();
   found_ = FoundTimeOffset{std::llround(1e9 * estimate->offset_s), estimate->sigma_s};
   steady_ = 0;
   return true;
