@@ -34,7 +34,7 @@ TEST_F(RunLogTest, MessagesThatDoNotGoOutAreToldAndThatTheyDoAgain) {
   EXPECT_EQ(said(), "edgeslam: messages do not go out: no route\nedgeslam: messages go out again\n");
 }
 
-TEST_F(RunLogTest, OfReportsOnlyLoopsAndFoundFramesAreTold) {
+TEST_F(RunLogTest, OfReportsLoopsFoundFramesAndWhatIsToBeConfiguredAreTold) {
   MappingReport report;
   report.frame_index = 7;
   report.events = {"keyframe 3 was culled"};
@@ -42,7 +42,11 @@ TEST_F(RunLogTest, OfReportsOnlyLoopsAndFoundFramesAreTold) {
   report.loop = ClosedLoop();
   report.events = {"loop closed"};
   run_log_.report(report);
-  EXPECT_EQ(said(), "edgeslam: frame 7: loop closed\n");
+  report.loop.reset();
+  report.is_of_setup = true;
+  report.events = {"the clocks differ"};
+  run_log_.report(report);
+  EXPECT_EQ(said(), "edgeslam: frame 7: loop closed\nedgeslam: frame 7: the clocks differ\n");
 }
 
 }  // namespace
