@@ -16,6 +16,7 @@
 #include "realtime/watched_thread.h"
 #include "recording/open_frame_source.h"
 #include "samples/sample_feed.h"
+#include "simulator/inertial_simulation.h"
 #include "simulator/simulator.h"
 #include "simulator/wheel_simulation.h"
 
@@ -209,6 +210,29 @@ TEST(TrackingThread, NorWithWheels) {
       /*is_looked_at=*/false, std::nullopt, settings);
   expectNone(run.trespasses);
   EXPECT_GT(run.good, 120) << "the lens is covered for 40 frames";
+}
+
+// Nor with an inertial unit: keyframes bring mapping what it felt.
+TEST(TrackingThread, NorWithAnInertialUnit) {
+  if (!canWatchThreads()) GTEST_SKIP() << "not under sanitizers";
+  const SimulatedSequence sequence = troubledSequence(SceneKind::panels_textured);
+  const std::vector<InertialSample> samples = simulateInertia(sequence);
+  const InertialUnit unit = simulatedUnit();
+  Settings settings;
+  useInertia(unit, settings);
+  const WatchedRun run = watch(
+      sequence.camera,
+      [&](LiveRun& live) {
+        SampleFeed feed_of_unit(samples, farthest_time_offset_ns);
+        for (int i = 0; i < sequence.size(); ++i) {
+          const SimulatedFrame frame = sequence.frame(i);
+          feed_of_unit.giveUntil(frame.time_ns, [&](const InertialSample& sample) { live.add(sample); });
+          feed(live, i, frame.time_ns, frame.grey, i == 70 ? "torn" : "");
+        }
+      },
+      /*is_looked_at=*/false, std::nullopt, settings);
+  expectNone(run.trespasses);
+  EXPECT_GT(run.good, 40);
 }
 
 // Nor where a map is only localised in: with other views of it taken over, predicted, lost and found again.
