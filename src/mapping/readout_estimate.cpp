@@ -30,7 +30,7 @@ double longestReadout(const Map& map, const std::vector<KeyframeId>& keyframes) 
   double longest_s = longest_tried_s;
   for (std::size_t k = 1; k < keyframes.size(); ++k) {
     const std::int64_t since = map.keyframes[keyframes[k]].time_ns - map.keyframes[keyframes[k - 1]].time_ns;
-    longest_s = std::min(longest_s, std::abs(1e-9 * static_cast<double>(since)));
+    if (since != 0) longest_s = std::min(longest_s, std::abs(1e-9 * static_cast<double>(since)));
   }
   return longest_s;
 }
