@@ -44,14 +44,13 @@ class CameraFinding {
   bool isSettled() const;
 
  private:
-  bool isDue(const CameraLooks& looks, int keyframes) const;
+  bool isDue(bool is_settled, bool rests, int keyframes) const;
   void lookAtReadout(const LookedAt& at, double longest_s, int keyframes, FoundCamera& found);
   void lookAtLens(const LookedAt& at, int keyframes, FoundCamera& found);
-  void lookAtPrincipalPoint(const LookedAt& at, int keyframes, FoundCamera& found);
 
   CameraFindingOptions options_;
-  CameraLooks readout_, focal_length_, distortion_;
-  PrincipalPointLooks principal_point_;
+  ReadoutLooks readout_;
+  LensLooks lens_;
   int since_readout_ = 0, since_lens_ = 0;  // was looked at [keyframes]
   int looks_ = 0;
 };

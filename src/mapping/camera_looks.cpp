@@ -2,127 +2,80 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace edgeslam {
 namespace {
 
-constexpr double farthest_believed = 0.25;  // change of the lens: beyond it the trials do not say
-constexpr double times_less_known = 4;      // what errs together makes estimates err so many times as far as they say
-constexpr Looking looking_for_focal_length_beside_distortion{0.005, 0.03, 3, 3, 0.02, 0.01, 0.003, 0.01};
-constexpr double alike = 0.25;        // estimates that differ by less of their value agree, too
-constexpr double beyond_doubt = 8;    // standard deviations; only without a least change
-constexpr double least_share = 0.02;  // of the cost: with the right lens some other one explains less ...
-constexpr double least_gain = 2;      // ... and of the cost itself: two standard deviations
-constexpr double clearly_more = 2;    // by itself: of the two a focal length is calibrated rather than a distortion ...
-constexpr double most_of_distortion = 0.04;  // ... which looks like so much of a focal length
+// Of the readout [s].
+constexpr double times_less_known = 4;    // what errs together makes estimates err so many times as far as they say
+constexpr double least_sigma_s = 0.0005;  // none is known better
+constexpr double least_sigmas = 3;        // over so many standard deviations it is not as presumed, ...
+constexpr int agreeing_looks = 2;         // ... if so many looks in a row say so, ...
+constexpr double beyond_doubt = 8;        // ... or one by so many standard deviations
+constexpr double agreement_s = 0.05;      // estimates that differ by less agree, ...
+constexpr double alike = 0.25;            // ... and by less of their value
+constexpr double little_s = 0.001;        // a change by less is none, for what has come to stay, ...
+constexpr double too_little_s = 0.0003;   // ... and by less the map is not adjusted
+constexpr double well_known_s = 0.002;    // standard deviation with which looks that find nothing count
 
-// Of the principal point [px].
-struct LookingForPrincipalPoint {
-  double least_sigma = 0.5;             // none is known better
-  double well_known = 2;                // standard deviation with which a look counts, ...
-  double least_sigmas = 3;              // ... if the change is so many of them ...
-  double least_share = 0.025;           // ... and explains so much of the cost
-  int agreeing_looks = 3;               // if so many looks in a row say so, within as many standard deviations, ...
-  double beyond_doubt = 0.1;            // ... or one that explains so much of the cost, it is not as presumed
-  double little = 1, too_little = 0.3;  // as above
-};
-constexpr LookingForPrincipalPoint looking_for_principal_point;
-
-double honestSigma(const Looking& looking, const CameraEstimate& estimate) {
-  return std::hypot(times_less_known * estimate.sigma, looking.least_sigma);
-}
-
-// A change that is clearly one.
-bool saysSo(const Looking& looking, const CameraEstimate& change) {
-  return std::abs(change.value) > std::max(looking.least, looking.least_sigmas * honestSigma(looking, change));
-}
+// Of the lens.
+constexpr double least_share = 0.02;  // of the cost: with the right lens some other one explains less
+constexpr double evidence_beyond_doubt = 20;
+constexpr double least_gain = 32;                                   // of a small cost
+constexpr double little_sigmas = 0.5;                               // a change by fewer standard deviations is none
+constexpr double well_known = 0.01, well_known_distortion = 0.004;  // as above
 
 }  // namespace
 
-CameraEstimate focalLengthOf(const LensEstimate& estimate) {
-  return {estimate.change(0), std::sqrt(estimate.covariance(0, 0))};
-}
-
-CameraEstimate distortionOf(const LensEstimate& estimate) {
-  return {std::sqrt(0.5 * estimate.change.tail<2>().squaredNorm()),
-          std::sqrt(0.5 * estimate.covariance.diagonal().tail<2>().sum())};
-}
-
-bool isToChange(const Looking& looking, const CameraEstimate& estimate, double now, int keyframes, int enough,
-                CameraLooks& looks, bool is_far_off) {
-  const double change = estimate.value - now;
+bool isToChange(const CameraEstimate& readout, double now_s, int keyframes, int enough, ReadoutLooks& looks) {
+  const double change_s = readout.value - now_s;
   if (looks.was_found) {
-    looks.steady = std::abs(change) < looking.little ? looks.steady + keyframes : 0;
+    looks.steady = std::abs(change_s) < little_s ? looks.steady + keyframes : 0;
     looks.is_settled = looks.steady >= enough;
-    return std::abs(change) > looking.too_little;
+    return std::abs(change_s) > too_little_s;
   }
-  const double sigma = honestSigma(looking, estimate);
-  const bool says_so = saysSo(looking, {change, estimate.sigma});
-  const bool is_alike =
-      is_far_off || std::abs(change - looks.last) < std::max(looking.agreement, alike * std::abs(change));
-  const bool agrees = looks.agreeing > 0 && change * looks.last > 0 && is_alike;
+  const double sigma_s = std::hypot(times_less_known * readout.sigma, least_sigma_s);
+  const bool says_so = std::abs(change_s) > least_sigmas * sigma_s;
+  const bool is_alike = std::abs(change_s - looks.last_s) < std::max(agreement_s, alike * std::abs(change_s));
+  const bool agrees = looks.agreeing > 0 && change_s * looks.last_s > 0 && is_alike;
   looks.agreeing = !says_so ? 0 : agrees ? looks.agreeing + 1 : 1;
-  looks.last = change;
-  looks.steady = !says_so && sigma < looking.well_known ? looks.steady + keyframes : 0;
+  looks.last_s = change_s;
+  looks.steady = !says_so && sigma_s < well_known_s ? looks.steady + keyframes : 0;
   looks.rests = looks.steady >= enough;
-  const bool is_beyond_doubt = looking.least == 0 && std::abs(change) > beyond_doubt * sigma;
-  looks.was_found = is_beyond_doubt || looks.agreeing >= looking.agreeing_looks;
+  looks.was_found = std::abs(change_s) > beyond_doubt * sigma_s || looks.agreeing >= agreeing_looks;
   return looks.was_found;
 }
 
-double enoughGain(double cost) {
-  return std::max(least_share * cost, times_less_known * times_less_known * least_gain);
+bool isUnderWay(const ReadoutLooks& looks) {
+  if (looks.is_settled) return false;
+  return looks.was_found ? looks.steady == 0 : looks.agreeing > 0;
 }
 
-ToldOfLens toldOfLens(const LensEquations& equations, double cost) {
-  const LensEstimate both = estimateLens(equations, true, true);
-  const LensEstimate focal_length = estimateLens(equations, true, false);
-  const LensEstimate distortion = estimateLens(equations, false, true);
-  const double enough = enoughGain(cost);
-  const auto tells = [&](const Looking& looking, const CameraEstimate& estimate, double gain) {
-    return gain > enough && saysSo(looking, estimate);
-  };
-  ToldOfLens told;
-  if (both.change.cwiseAbs().maxCoeff() < farthest_believed) {
-    // A distortion that is left out looks like a focal length that is a little off.
-    const bool is_mostly_focal_length = both.gain > clearly_more * distortion.gain;
-    told.focal_length =
-        tells(is_mostly_focal_length ? looking_for_focal_length : looking_for_focal_length_beside_distortion,
-              focalLengthOf(both), both.gain - distortion.gain);
-    told.distortion = tells(looking_for_distortion, distortionOf(both), both.gain - focal_length.gain);
-  }
-  if (told.focal_length || told.distortion) return told;
-  const bool may_be_focal_length = tells(looking_for_focal_length, focalLengthOf(focal_length), focal_length.gain);
-  const bool may_be_distortion = tells(looking_for_distortion, distortionOf(distortion), distortion.gain);
-  const bool is_little = std::abs(focal_length.change(0)) < most_of_distortion;
-  const double times_as_much = may_be_distortion && is_little ? clearly_more : 1;
-  told.focal_length = may_be_focal_length && focal_length.gain > times_as_much * distortion.gain;
-  told.distortion = may_be_distortion && !told.focal_length;
-  return told;
+LensParts toldByLooks(const LensParts& parts, double evidence, LensLooks& looks) {
+  const LensParts before = std::exchange(looks.told, parts);
+  if (evidence > evidence_beyond_doubt) return parts;
+  return {looks.found.focal_length || (parts.focal_length && before.focal_length),
+          looks.found.distortion || (parts.distortion && before.distortion),
+          looks.found.principal_point || (parts.principal_point && before.principal_point)};
 }
 
-double enoughGainOfPrincipalPoint(double cost) {
-  return std::max(enoughGain(cost), looking_for_principal_point.least_share * cost);
-}
-
-bool isToChange(const PrincipalPointEstimate& estimate, double cost, int keyframes, int enough,
-                PrincipalPointLooks& looks) {
-  const LookingForPrincipalPoint& looking = looking_for_principal_point;
-  const double length = estimate.change.norm();
-  if (looks.was_found) {
-    looks.steady = length < looking.little ? looks.steady + keyframes : 0;
+bool isToChange(const LensEstimate& estimate, const LensParts& told, double cost, int keyframes, int enough,
+                LensLooks& looks) {
+  if (any(looks.found)) {
+    const bool is_little = estimate.change.cwiseQuotient(estimate.sigma).cwiseAbs().maxCoeff() < little_sigmas;
+    looks.steady = is_little ? looks.steady + keyframes : 0;
     looks.is_settled = looks.steady >= enough;
-    return length > looking.too_little;
+    return !is_little;
   }
-  const double sigma = std::hypot(times_less_known * estimate.sigma, looking.least_sigma);
-  const double far = looking.least_sigmas * sigma;
-  const bool says_so = sigma < looking.well_known && length > far && estimate.gain > enoughGainOfPrincipalPoint(cost);
-  const bool agrees = looks.agreeing > 0 && (estimate.change - looks.last).norm() < far;
-  looks.agreeing = !says_so ? 0 : agrees ? looks.agreeing + 1 : 1;
-  looks.last = estimate.change;
-  const bool is_beyond_doubt = says_so && estimate.gain > looking.beyond_doubt * cost;
-  looks.was_found = is_beyond_doubt || looks.agreeing >= looking.agreeing_looks;
-  return looks.was_found;
+  const bool is_told = any(told) && estimate.gain > enoughGain(cost);
+  const bool is_well_known =
+      estimate.sigma(0) < well_known && estimate.sigma.segment<2>(1).maxCoeff() < well_known_distortion;
+  looks.steady = !is_told && is_well_known ? looks.steady + keyframes : 0;
+  looks.rests = looks.steady >= enough;
+  return is_told;
 }
+
+double enoughGain(double cost) { return std::max(least_share * cost, least_gain); }
 
 }  // namespace edgeslam

@@ -7,69 +7,97 @@ namespace {
 
 constexpr int interval = 4, enough_keyframes = 24;
 constexpr double cost = 10'000;
+constexpr LensParts all{true, true, true}, only_focal_length{true, false, false}, none{};
 
-PrincipalPointEstimate estimateOf(double x_px, double y_px, double sigma_px = 0.2, double gain = 0.04 * cost) {
-  return {{x_px, y_px}, sigma_px, gain};
+LensEstimate estimateOf(double focal_length, double sigma = 0.005, double gain = 0.04 * cost) {
+  LensEstimate estimate;
+  estimate.change(0) = focal_length;
+  estimate.sigma << sigma, 0.001, 0.001, 1, 1;
+  estimate.gain = gain;
+  return estimate;
 }
 
-bool isToChange(const PrincipalPointEstimate& estimate, PrincipalPointLooks& looks) {
-  return edgeslam::isToChange(estimate, cost, interval, enough_keyframes, looks);
+bool isToChange(const LensEstimate& estimate, const LensParts& told, LensLooks& looks) {
+  return edgeslam::isToChange(estimate, told, cost, interval, enough_keyframes, looks);
 }
 
-TEST(CameraLooks, APrincipalPointIsWrongWhereThreeLooksAgree) {
-  PrincipalPointLooks looks;
-  EXPECT_FALSE(isToChange(estimateOf(6, 5), looks));
-  EXPECT_FALSE(isToChange(estimateOf(5, 6), looks));
-  EXPECT_TRUE(isToChange(estimateOf(6, 4), looks));
+TEST(CameraLooks, WhatIsToldOfALensCountsInTwoLooksInARowOrBeyondDoubt) {
+  LensLooks looks;
+  EXPECT_FALSE(any(toldByLooks(only_focal_length, 10, looks)));
+  EXPECT_FALSE(any(toldByLooks({false, true, false}, 10, looks)));
+  EXPECT_FALSE(any(toldByLooks(only_focal_length, 10, looks)));
+  const LensParts twice = toldByLooks(all, 10, looks);
+  EXPECT_TRUE(twice.focal_length);
+  EXPECT_FALSE(twice.distortion || twice.principal_point);
+  LensLooks others;
+  EXPECT_TRUE(toldByLooks(only_focal_length, 30, others).focal_length);
 }
 
-TEST(CameraLooks, WhereOneLookDisagreesTheyBeginAnew) {
-  PrincipalPointLooks looks;
-  for (const PrincipalPointEstimate& other :
-       {estimateOf(-6, 5), estimateOf(1, 0), estimateOf(6, 5, 0.6), estimateOf(6, 5, 0.2, 0.01 * cost)}) {
-    looks = {};
-    isToChange(estimateOf(6, 5), looks);
-    isToChange(estimateOf(6, 5), looks);
-    EXPECT_FALSE(isToChange(other, looks)) << other.change.transpose();
-    EXPECT_FALSE(isToChange(estimateOf(6, 5), looks)) << other.change.transpose();
-    EXPECT_FALSE(isToChange(estimateOf(6, 5), looks)) << other.change.transpose();
-    EXPECT_TRUE(isToChange(estimateOf(6, 5), looks)) << other.change.transpose();
-  }
+TEST(CameraLooks, WhatWasFoundOfALensIsToldForEver) {
+  LensLooks looks;
+  looks.found = {false, false, true};
+  const LensParts told = toldByLooks({true, false, true}, 10, looks);
+  EXPECT_TRUE(told.principal_point);
+  EXPECT_FALSE(told.focal_length);
 }
 
-TEST(CameraLooks, OneLookThatExplainsMuchIsBeyondDoubtIfItIsKnownWell) {
-  PrincipalPointLooks looks;
-  EXPECT_FALSE(isToChange(estimateOf(9, -49, 1.3, 0.19 * cost), looks));
-  EXPECT_TRUE(isToChange(estimateOf(8, 1.5, 0.4, 0.12 * cost), looks));
+TEST(CameraLooks, ALensChangesWhereItExplainsEnough) {
+  LensLooks looks;
+  EXPECT_TRUE(isToChange(estimateOf(0.05), only_focal_length, looks));
+  EXPECT_FALSE(isToChange(estimateOf(0.05), none, looks)) << "nothing is told";
+  EXPECT_FALSE(isToChange(estimateOf(0.05, 0.005, 0.01 * cost), only_focal_length, looks)) << "it explains too little";
 }
 
-TEST(CameraLooks, APrincipalPointThatWasFoundSettlesOnceItStays) {
-  PrincipalPointLooks looks;
-  ASSERT_TRUE(isToChange(estimateOf(8, 1.5, 0.4, 0.12 * cost), looks));
-  EXPECT_TRUE(isToChange(estimateOf(1, 1), looks)) << "still nearer";
+TEST(CameraLooks, ALensThatWasFoundSettlesOnceItStays) {
+  LensLooks looks;
+  looks.found = only_focal_length;
+  EXPECT_TRUE(isToChange(estimateOf(0.01, 0.005, 10), only_focal_length, looks)) << "still nearer";
   for (int keyframes = interval; keyframes <= enough_keyframes; keyframes += interval) {
     EXPECT_FALSE(looks.is_settled) << keyframes;
-    EXPECT_FALSE(isToChange(estimateOf(0.1, 0.1), looks));
+    EXPECT_FALSE(isToChange(estimateOf(0.002, 0.005, 10), only_focal_length, looks));
   }
   EXPECT_TRUE(looks.is_settled);
 }
 
-TEST(CameraLooks, AReadoutBeyondDoubtTakesOneLookAndAFocalLengthThree) {
-  CameraLooks readout, focal_length;
-  EXPECT_TRUE(edgeslam::isToChange(looking_for_readout, {0.02, 0.0003}, 0, interval, enough_keyframes, readout));
-  const auto look = [&] {
-    return edgeslam::isToChange(looking_for_focal_length, {-0.1, 0.001}, 0, interval, enough_keyframes, focal_length);
-  };
-  EXPECT_FALSE(look());
-  EXPECT_FALSE(look());
-  EXPECT_TRUE(look());
+TEST(CameraLooks, ALensThatIsAsPresumedRestsIfThatIsKnownWell) {
+  LensLooks known, unknown;
+  for (int keyframes = interval; keyframes <= enough_keyframes; keyframes += interval) {
+    EXPECT_FALSE(known.rests) << keyframes;
+    EXPECT_FALSE(isToChange(estimateOf(0.001), none, known));
+    EXPECT_FALSE(isToChange(estimateOf(0.001, 0.03), none, unknown));
+  }
+  EXPECT_TRUE(known.rests);
+  EXPECT_FALSE(unknown.rests);
 }
 
-TEST(CameraLooks, WhatIsAsPresumedRests) {
-  CameraLooks looks;
+TEST(CameraLooks, AReadoutTakesTwoLooksOrOneBeyondDoubt) {
+  ReadoutLooks one, two;
+  EXPECT_TRUE(edgeslam::isToChange({0.02, 0.0003}, 0, interval, enough_keyframes, one));
+  const auto look = [&](double readout_s) {
+    return edgeslam::isToChange({readout_s, 0.001}, 0, interval, enough_keyframes, two);
+  };
+  EXPECT_FALSE(look(0.02));
+  EXPECT_FALSE(look(-0.02));
+  EXPECT_FALSE(look(0.02));
+  EXPECT_TRUE(look(0.021));
+}
+
+TEST(CameraLooks, AReadoutIsUnderWayUntilItStays) {
+  ReadoutLooks looks;
+  EXPECT_FALSE(isUnderWay(looks));
+  edgeslam::isToChange({0.02, 0.001}, 0, interval, enough_keyframes, looks);
+  EXPECT_TRUE(isUnderWay(looks));
+  ASSERT_TRUE(edgeslam::isToChange({0.02, 0.001}, 0, interval, enough_keyframes, looks));
+  EXPECT_TRUE(isUnderWay(looks));
+  edgeslam::isToChange({0.0205, 0.001}, 0.02, interval, enough_keyframes, looks);
+  EXPECT_FALSE(isUnderWay(looks));
+}
+
+TEST(CameraLooks, AReadoutThatIsAsPresumedRests) {
+  ReadoutLooks looks;
   for (int keyframes = interval; keyframes <= enough_keyframes; keyframes += interval) {
     EXPECT_FALSE(looks.rests) << keyframes;
-    EXPECT_FALSE(edgeslam::isToChange(looking_for_focal_length, {0.001, 0.001}, 0, interval, enough_keyframes, looks));
+    EXPECT_FALSE(edgeslam::isToChange({0.0001, 0.0001}, 0, interval, enough_keyframes, looks));
   }
   EXPECT_TRUE(looks.rests);
 }
