@@ -47,9 +47,9 @@ void CameraFinding::lookAtLens(const LookedAt& at, int keyframes, FoundCamera& f
   found = withLens(at.camera, found, change, is_presumed ? most_change_of_presumed : most_change_of_calibrated);
 }
 
-bool CameraFinding::isSettled() const {
-  return !options_.is_enabled || ((readout_.is_settled || readout_.rests) && (lens_.is_settled || lens_.rests));
-}
+bool CameraFinding::readoutIsSettled() const { return !options_.is_enabled || readout_.is_settled || readout_.rests; }
+
+bool CameraFinding::lensIsSettled() const { return !options_.is_enabled || lens_.is_settled || lens_.rests; }
 
 bool CameraFinding::isDue(bool is_settled, bool rests, int keyframes) const {
   if (is_settled) return false;

@@ -41,7 +41,9 @@ class CameraFinding {
             Map& map);
 
   // What is found came to stay, and what is not is looked for now and then at most.
-  bool isSettled() const;
+  bool readoutIsSettled() const;
+  bool lensIsSettled() const;
+  bool isSettled() const { return readoutIsSettled() && lensIsSettled(); }
 
  private:
   bool isDue(bool is_settled, bool rests, int keyframes) const;

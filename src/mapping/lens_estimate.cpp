@@ -18,8 +18,8 @@ constexpr double most_change_at_once = 0.1, most_moved_at_once_px = 20;
 constexpr double most_moved = 0.05;  // of the longer side: the principal point from that of the calibration
 // What errs together makes costs tell so many times as much as measurements that err by themselves.
 constexpr double times_less_known = 16;
-// Evidence by which a part of the lens is another one: three and a half standard deviations of one unknown.
-constexpr double least_evidence = 6;
+// Evidence by which a part of the lens is another one: some four standard deviations of one unknown.
+constexpr double least_evidence = 9;
 
 double longerSide(const Camera& camera) { return std::max(camera.width, camera.height); }
 

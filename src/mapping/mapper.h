@@ -107,9 +107,9 @@ class Mapper {
   std::string contradictionOfWheels() const;
   // Why it is not known how the world lies to the earth; empty where it is, or there is no inertial unit.
   const std::string& lackingForInertia() const { return lacking_; }
-  // The camera with what was found of it, and whether nothing more is looked for.
+  // The camera with what was found of it, and what stays so.
   const Camera& camera() const { return camera_; }
-  bool cameraIsSettled() const { return camera_finding_.isSettled(); }
+  const CameraFinding& cameraFinding() const { return camera_finding_; }
   // How the clocks of the unit and the camera differ, where that is not as it was given; also where it comes too late.
   std::optional<FoundTimeOffset> foundTimeOffset() const {
     return time_offset_finding_ ? time_offset_finding_->found() : std::nullopt;

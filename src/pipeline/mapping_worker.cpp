@@ -91,15 +91,19 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
 
 // Once it has come to stay; what was told already is not told again.
 void MappingWorker::tellOfCamera() {
-  if (!mapper_.cameraIsSettled()) return;
   const FoundCamera& found = mapper_.map().found;
-  const FoundCamera told = std::exchange(told_camera_, found);
-  if (found.readout_s && found.readout_s != told.readout_s) {
+  const FoundCamera told = told_camera_;
+  if (mapper_.cameraFinding().readoutIsSettled() && found.readout_s && found.readout_s != told.readout_s) {
+    told_camera_.readout_s = found.readout_s;
     report(last_frame_)
         .events.push_back(formatted("the camera has a rolling shutter and reads its rows over %.1f ms: with "
                                     "camera.readout: %.4f in the configuration this is known from the start",
                                     1e3 * *found.readout_s, *found.readout_s));
   }
+  if (!mapper_.cameraFinding().lensIsSettled()) return;
+  const std::optional<double> told_readout_s = told_camera_.readout_s;
+  told_camera_ = found;
+  told_camera_.readout_s = told_readout_s;
   if (found.focal_scale != told.focal_scale) {
     report(last_frame_)
         .events.push_back(formatted("the focal length is not that of the calibration, but %.1f pixels: calibrate the "
