@@ -68,7 +68,7 @@ TEST(LensEstimate, WhatIsOffIsToldAndNothingElse) {
   };
   for (std::uint64_t seed = 3; seed <= 5; ++seed) {
     EXPECT_FALSE(any(toldWith(Walk::camera(), seed))) << seed;
-    const LensParts focal_length = toldWith(withFocalLengths(Walk::camera(), 1.06), seed);
+    const LensParts focal_length = toldWith(withFocalLengths(Walk::camera(), 1.09), seed);
     EXPECT_TRUE(focal_length.focal_length) << seed;
     EXPECT_FALSE(focal_length.principal_point) << seed;
     const LensParts distortion = toldWith(withDistortion(Walk::camera(), 0.03), seed);
