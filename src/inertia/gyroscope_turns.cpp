@@ -32,6 +32,7 @@ GyroscopeTurns::GyroscopeTurns(const std::vector<InertialSample>& samples, const
   }
 }
 
+// What preintegrate() says of the rotation, without the rest.
 GyroscopeTurns::Turned GyroscopeTurns::after(const Turned& before, const InertialSample& from,
                                              const InertialSample& to) const {
   const double seconds = secondsBetween(from, to);

@@ -20,11 +20,12 @@ constexpr double too_little_s = 0.0003;   // ... and by less the map is not adju
 constexpr double well_known_s = 0.002;    // standard deviation with which looks that find nothing count
 
 // Of the lens.
-constexpr double least_share = 0.02;  // of the cost: with the right lens some other one explains less
-constexpr double evidence_beyond_doubt = 20;
-constexpr double least_gain = 32;                                   // of a small cost
-constexpr double little_sigmas = 0.5;                               // a change by fewer standard deviations is none
-constexpr double well_known = 0.01, well_known_distortion = 0.004;  // as above
+constexpr double evidence_beyond_doubt = 20;  // one look that says so is enough
+constexpr double least_share = 0.02;          // of the cost: with the right lens some other one explains less ...
+constexpr double least_gain = 32;             // ... and of a small cost less than this
+constexpr double little_sigmas = 0.5;         // a change by fewer standard deviations is none
+// Standard deviations of focal length and distortion with which looks that find nothing count.
+constexpr double well_known = 0.01, well_known_distortion = 0.004;
 
 }  // namespace
 
