@@ -87,11 +87,12 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   frame_.known = {};
   const double without_s = lost_since_ns_ < 0 ? 0 : secondsSince(lost_since_ns_, time_ns);
   const bool any_will_do = !mapStands() || is_lost_ || without_s > options_.blur_gate.longest_rejection_s;
-  if (!is_sharp && !any_will_do) {
-    beLostSince(time_ns);
-    predict(time_ns, "blurred image", result);
+  frame_is_blurred_ = !is_sharp && !any_will_do;
+  if (frame_is_blurred_) {
+    followBlurred(work);
     return false;
   }
+  blurred_in_a_row_ = 0;
   if (isToBeginWorld(time_ns)) beginWorld();
   if (!mapStands() && !last_.isThere()) return startMap("first frame of the map", work);
 
@@ -114,6 +115,23 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   if (mapStands() || mapping_busy) return is_told;
   helpStart(for_mapping);
   return true;
+}
+
+// P4: a blurred frame is no ground to build on. But where enough of the map is found in it, its pose is as good as any.
+// Where that is so twice in a row it was no blur, but another scene. Where blur hides most of the tracks, the next
+// frame is followed from those of the last sharp one.
+void Tracker::followBlurred(Work& work) {
+  if (!locate(work) || frame_.position_is_held) {
+    figures_.is_leap = false;
+    blurred_in_a_row_ = 0;
+    beLostSince(work.time_ns);
+    return predict(work.time_ns, "blurred image", work.result);
+  }
+  tell(work);
+  if (++blurred_in_a_row_ > 1) preparation_.forgetSharpness();
+  const auto kept = static_cast<double>(frame_.tracks.size());
+  if (kept < options_.blurred_tracks_share * static_cast<double>(last_.tracks.size())) return beLostSince(work.time_ns);
+  remember();
 }
 
 // P13, P14
@@ -140,7 +158,7 @@ bool Tracker::locate(Work& work) {
   const bool is_lost = lost_since_ns_ >= 0;
   if (is_lost && secondsSince(lost_since_ns_, work.time_ns) > options_.regain_seconds) return false;
   scratch_.release();
-  const bool regains = is_lost || last_was_found_again_;
+  const bool regains = is_lost || last_was_found_again_ || frame_is_blurred_;
   const InertialPrediction predicted = motion_.predict(last_, work.time_ns, view_);
   const LocationPrior prior{predicted.world_T_camera,
                             mapStands() ? priorOf(predicted) : PosePrior(),

@@ -40,11 +40,13 @@ struct TrackerOptions {
   KeyframeOptions keyframes;
   WorldUncertaintyOptions uncertainty;
   MeasuredNoiseOptions noise;
-  int fewest_tracks = 30;       // fewer are not enough to start a map with
-  double spare_share = 0.45;    // of the first frame's tracks: fewer left, and another start is kept beside it
-  double restart_share = 0.3;   // of the first frame's tracks: fewer left, and the initialisation starts anew ...
-  int restart_frames = 4;       // ... after so many such frames: mapping may be about to answer [frames]
-  double regain_seconds = 0.7;  // so long after a loss the last tracked frame's points are still looked for
+  int fewest_tracks = 30;      // fewer are not enough to start a map with
+  double spare_share = 0.45;   // of the first frame's tracks: fewer left, and another start is kept beside it
+  double restart_share = 0.3;  // of the first frame's tracks: fewer left, and the initialisation starts anew ...
+  int restart_frames = 4;      // ... after so many such frames: mapping may be about to answer [frames]
+  // With fewer of the tracks found in a blurred frame, share of them, the next frame is followed from the one before.
+  double blurred_tracks_share = 0.5;
+  double regain_seconds = 0.7;          // so long after a loss the last tracked frame's points are still looked for
   std::optional<InertialUnit> inertia;  // that goes with the camera; none: the camera alone
   InertiaOnlyOptions inertia_only;
   std::optional<WheelOptions> wheels;  // beneath the camera; none: the camera alone
@@ -52,7 +54,7 @@ struct TrackerOptions {
   bool worlds_enabled = true;
   // So long after the first sharp frame that was lost a new world is begun beside those that were lost. Blurred frames
   // do not count: they do not tell that the camera is elsewhere.
-  double new_world_seconds = 0.5;
+  double new_world_seconds = 0.25;
   // Where inertia may tell the pose meanwhile it is begun so long after the first frame without. In a frozen map poses
   // are predicted for so long.
   double predicted_seconds = 1;
@@ -142,6 +144,7 @@ class Tracker {
   bool tooFewAreLeft();
   bool goOnFromSpare();
   bool isToKeepSpare() const;
+  void followBlurred(Work& work);
   void helpStart(TrackedFrame& for_mapping);
   bool selectKeyframe(bool& located, Work& work);
   void keepEdgesOfStart(FollowedFrame& frame);
@@ -187,6 +190,8 @@ class Tracker {
   FollowedFrame kept_;           // a lost frame that others look for
   KeyframeId kept_number_ = -1;  // that it gets if it is recovered as a keyframe
   bool frame_is_lost_ = false;
+  bool frame_is_blurred_ = false;
+  int blurred_in_a_row_ = 0;                    // frames that were located all the same
   bool is_lost_ = false;                        // the last frame was, and not merely blurred
   std::int64_t lost_since_ns_ = -1;             // or blurred since; -1: neither
   std::int64_t lost_sharp_since_ns_ = -1;       // without the blurred ones; -1: not lost
