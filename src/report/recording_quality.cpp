@@ -35,10 +35,12 @@ std::optional<Problem> measurementErrors(const RunResult& result) {
                           : "check the calibration (docs/calibrating.md)")};
 }
 
+bool isBlurred(const std::string& reason) { return reason.find("blurred image") != std::string::npos; }
+
 std::optional<Problem> blurredFrames(const RunResult& result) {
   constexpr double limit = 0.05, hardly_usable = 0.5;
   const auto blurred = std::count_if(result.frames.begin(), result.frames.end(),
-                                     [](const FrameRecord& frame) { return frame.reason == "blurred image"; });
+                                     [](const FrameRecord& frame) { return isBlurred(frame.reason); });
   const double share =
       static_cast<double>(blurred) / static_cast<double>(std::max<std::size_t>(1, result.frames.size()));
   if (!(share > limit)) return std::nullopt;

@@ -19,6 +19,14 @@ void append(double share, std::string& text) {
   text += static_cast<char>('0' + thousandths % 10);
 }
 
+// Measured on that level of the pyramid.
+void countForLess(int level, std::vector<Track>& tracks) {
+  for (Track& track : tracks) {
+    track.sigma_normal = std::ldexp(track.sigma_normal, level);
+    track.sigma_tangent = std::ldexp(track.sigma_tangent, level);
+  }
+}
+
 }  // namespace
 
 // Piece by piece: on the way from a frame to its pose there is no allocation.
@@ -72,9 +80,11 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
 
   // P5, P6
   const Pixels predictions = predictPixels(camera_, points, last.world_T_camera, predicted, &memory);
-  const FlowMatches matches =
-      followPoints(from, to, last.tracks, predictions, options_.flow, &memory, hidden_from_flow_);
-  filterTracks(from, to, *frame.edges, last.tracks, matches, options_.flow, frame.tracks, &memory);
+  FlowOptions flow = options_.flow;
+  if (prior.coarsely) flow.finest_level = options_.coarse_level;
+  const FlowMatches matches = followPoints(from, to, last.tracks, predictions, flow, &memory, hidden_from_flow_);
+  filterTracks(from, to, *frame.edges, last.tracks, matches, flow, frame.tracks, &memory);
+  if (prior.coarsely) countForLess(options_.coarse_level, frame.tracks);
   clock.finished(Stage::flow);
 
   figures = {};
@@ -86,7 +96,7 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
                                   seconds,           prior.world_T_predicted, followed_share};
   std::optional<FramePose> pose = poseInMap(view, prior, predicted, context, frame, figures, memory, clock);
   frame.position_is_held = !pose;
-  if (!pose && view.initialised && !figures.is_leap) {
+  if (!pose && view.initialised && !figures.is_leap && !prior.coarsely) {
     const HeldCamera held{last.world_T_camera, last.covariance,    seconds,
                           followed_share,      predicted.rotation, frame.scene_depth};
     pose = orientationOnly(camera_, view, frame.tracks, held, options_.pose, options_.orientation_only, &memory,
@@ -104,10 +114,12 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   const auto in_view = frame.position_is_held ? 0 : static_cast<double>(pose->track_of_observation.size());
   frame.outlier_share = in_view > 0 ? 1 - frame.inlier_count / in_view : 0;
   countOutliers(*pose, view.initialised, frame.tracks);
-  if (!frame.position_is_held) {
+  if (!frame.position_is_held && !prior.coarsely) {
     lockAlongEdges(camera_, view, {frame.world_T_camera, frame.twist}, options_.edge_lock, frame.tracks);
   }
-  for (Track& track : frame.tracks) updateAccuracy(to.pyramid.levels[0], prior.accuracy, track);
+  if (!prior.coarsely) {
+    for (Track& track : frame.tracks) updateAccuracy(to.pyramid.levels[0], prior.accuracy, track);
+  }
   clock.finished(Stage::pose);
   return true;
 }
@@ -121,8 +133,10 @@ std::optional<FramePose> FrameLocation::poseInMap(const MapView& view, const Loc
       estimatePose(camera_, view, frame.tracks, world_T_predicted, options_.pose, &memory, prior.motion, prior.known);
   if (!first.result.converged) return std::nullopt;
   clock.finished(Stage::pose);
-  refineTracks(camera_, view, *frame.images, {first.result.world_T_camera, first.result.twist}, context.scene_depth,
-               options_.refinement, frame.tracks);
+  if (!prior.coarsely) {
+    refineTracks(camera_, view, *frame.images, {first.result.world_T_camera, first.result.twist}, context.scene_depth,
+                 options_.refinement, frame.tracks);
+  }
   clock.finished(Stage::refinement);
   FramePose pose = estimatePose(camera_, view, frame.tracks, first.result.world_T_camera, options_.pose, &memory,
                                 prior.motion, prior.known);
@@ -131,7 +145,7 @@ std::optional<FramePose> FrameLocation::poseInMap(const MapView& view, const Loc
   figures.asked = fewestInliers(pose.track_of_observation.size(), context, options_.acceptance);
   // What the points say of the noise they say of a pose that is refused as well: else it could not rise when it
   // matters.
-  if (view.initialised) frame.noise = noiseEvidence(pose.result.errors_across, &memory);
+  if (view.initialised && !prior.coarsely) frame.noise = noiseEvidence(pose.result.errors_across, &memory);
   if (!pose.result.converged) return std::nullopt;
   figures.has_pose = true;
   figures.deviation = largestDeviation(pose.result.covariance, context.scene_depth);

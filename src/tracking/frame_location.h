@@ -31,15 +31,17 @@ struct LocationOptions {
   SparseAlignmentOptions alignment;
   AcceptanceOptions acceptance;
   OrientationOnlyOptions orientation_only;
+  int coarse_level = 2;    // of the pyramid: the finest on which tracks are followed into what is blurred
   int outlier_frames = 4;  // a track whose map point misses the pose so often in a row is dropped
 };
 
 // What is known before a frame is located.
 struct LocationPrior {
-  Pose world_T_predicted;         // from motion alone ...
-  PosePrior known;                // ... where that is known well enough to count beside what is measured
-  bool regains = false;           // the frame before was blurred, lost, or found again by others
-  bool knows_motion = false;      // it and the one before that were located in this map
+  Pose world_T_predicted;     // from motion alone ...
+  PosePrior known;            // ... where that is known well enough to count beside what is measured
+  bool regains = false;       // the frame before was blurred, lost, or found again by others
+  bool knows_motion = false;  // it and the one before that were located in this map
+  bool coarsely = false;      // the frame shows nothing fine: points count for as much less as their level is coarser
   const PointAccuracy& accuracy;  // of what is measured in this frame
   RowMotion motion;               // tells how the camera moves while its rows are read
 };

@@ -131,6 +131,7 @@ void filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap&
                   std::vector<Track>& kept, std::pmr::memory_resource* memory) {
   const cv::Mat& image = to.pyramid.levels[0];
   const auto border = static_cast<float>(flowReach(options));
+  const bool is_coarse = options.finest_level > 0;
   Occupancy occupancy(image.cols, image.rows, static_cast<float>(options.redundancy), tracks.size(), memory);
   kept.clear();
   for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -139,9 +140,10 @@ void filterTracks(const FrameImages& from, const FrameImages& to, const EdgeMap&
     if (!match.found || !insideImage(image, match.pixel, border)) continue;
     // A corner-like point must come back in both directions, a point of an edge only across it.
     const float error = backwardError(from.pyramid, to.pyramid, track.pixel, match.pixel, track.normal, options);
-    if (error > static_cast<float>(options.forward_backward)) continue;
+    if (error > std::ldexp(static_cast<float>(options.forward_backward), options.finest_level)) continue;
     const float least_dot = track.corner ? -1.0f : 0.7f;
-    if (nearestEdgePoint(edges, match.pixel, track.normal, static_cast<float>(options.edge_distance), least_dot) < 0)
+    if (!is_coarse &&
+        nearestEdgePoint(edges, match.pixel, track.normal, static_cast<float>(options.edge_distance), least_dot) < 0)
       continue;
     if (!occupancy.take(match.pixel)) continue;
     kept.push_back(track);

@@ -36,6 +36,12 @@ int countInMap(const MapView& view, const std::vector<Track>& tracks) {
                                         [&](const Track& track) { return points.find(track.id) != nullptr; }));
 }
 
+// Whether a frame has this share of the edges of the one before, at least.
+bool hasEdges(const FollowedFrame& frame, const FollowedFrame& before, double share) {
+  const auto count = [](const FollowedFrame& f) { return static_cast<double>(f.edges->points.size()); };
+  return count(frame) >= share * count(before);
+}
+
 int pyramidLevels(const TrackerOptions& options) {
   return std::max(options.location.flow.levels, least_pyramid_levels);
 }
@@ -92,7 +98,6 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
     followBlurred(work);
     return false;
   }
-  blurred_in_a_row_ = 0;
   if (isToBeginWorld(time_ns)) beginWorld();
   if (!mapStands() && !last_.isThere()) return startMap("first frame of the map", work);
 
@@ -118,20 +123,47 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
 }
 
 // P4: a blurred frame is no ground to build on. But where enough of the map is found in it, its pose is as good as any.
-// Where that is so twice in a row it was no blur, but another scene. Where blur hides most of the tracks, the next
-// frame is followed from those of the last sharp one.
+// Where blur hides most of the tracks, the next frame is followed from those of the last sharp one.
 void Tracker::followBlurred(Work& work) {
   if (!locate(work) || frame_.position_is_held) {
+    lost_reason_.assign("blurred image");
+    if (!followCoarsely(work)) predict(work.time_ns, lost_reason_, work.result);
     figures_.is_leap = false;
-    blurred_in_a_row_ = 0;
-    beLostSince(work.time_ns);
-    return predict(work.time_ns, "blurred image", work.result);
+    return beLostSince(work.time_ns);
   }
   tell(work);
-  if (++blurred_in_a_row_ > 1) preparation_.forgetSharpness();
   const auto kept = static_cast<double>(frame_.tracks.size());
   if (kept < options_.blurred_tracks_share * static_cast<double>(last_.tracks.size())) return beLostSince(work.time_ns);
   remember();
+}
+
+// What neither blur nor a jerk takes from the images is on the coarser levels of their pyramids. What is found there is
+// a pose, and how the camera moves; the next frame is followed from the last one that showed more. `lost_reason_` says
+// why that one is not this.
+bool Tracker::followCoarsely(Work& work) {
+  if (!mapStands() || options_.map_is_frozen || !last_.isThere() || figures_.is_leap) return false;
+  if (lost_since_ns_ >= 0 && secondsSince(lost_since_ns_, work.time_ns) > options_.regain_seconds) return false;
+  if (!hasEdges(frame_, last_, options_.coarse_fewest_edges)) return false;
+  scratch_.release();
+  LocationFigures figures;
+  const LocationPrior prior = priorFor(work.time_ns, Following::coarsely);
+  if (!location_.locate(last_, view_, prior, frame_, figures, scratch_, work.clock)) return false;
+  tell(work);
+  work.result.reason.assign("followed coarsely: ").append(lost_reason_);
+  motion_.observeCoarsely(last_, frame_);
+  return true;
+}
+
+LocationPrior Tracker::priorFor(std::int64_t time_ns, Following how) const {
+  const InertialPrediction predicted = motion_.predict(last_, time_ns, view_);
+  const bool is_coarse = how == Following::coarsely;
+  return {predicted.world_T_camera,
+          mapStands() ? priorOf(predicted) : PosePrior(),
+          is_coarse || lost_since_ns_ >= 0 || last_was_found_again_ || frame_is_blurred_,
+          located_in_a_row_ >= 2 && !is_coarse,
+          is_coarse,
+          preparation_.accuracy(),
+          motion_.whileRowsAreRead(last_, time_ns, mapStands())};
 }
 
 // P13, P14
@@ -158,14 +190,7 @@ bool Tracker::locate(Work& work) {
   const bool is_lost = lost_since_ns_ >= 0;
   if (is_lost && secondsSince(lost_since_ns_, work.time_ns) > options_.regain_seconds) return false;
   scratch_.release();
-  const bool regains = is_lost || last_was_found_again_ || frame_is_blurred_;
-  const InertialPrediction predicted = motion_.predict(last_, work.time_ns, view_);
-  const LocationPrior prior{predicted.world_T_camera,
-                            mapStands() ? priorOf(predicted) : PosePrior(),
-                            regains,
-                            located_in_a_row_ >= 2,
-                            preparation_.accuracy(),
-                            motion_.whileRowsAreRead(last_, work.time_ns, mapStands())};
+  const LocationPrior prior = priorFor(work.time_ns, Following::finely);
   const bool is_located = location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
   if (figures_.is_leap) frame_.tracks.clear();  // nor is it recovered by them
   return is_located;
@@ -196,8 +221,7 @@ void Tracker::bePlacedByWheels(const Matrix6d& covariance) {
 bool Tracker::goOnByWheels(std::int64_t time_ns) {
   if (options_.map_is_frozen) return false;
   const std::optional<WheelPrediction> carried = carriedByWheels(time_ns);
-  const auto edges = [](const FollowedFrame& frame) { return static_cast<double>(frame.edges->points.size()); };
-  if (!carried || edges(frame_) < options_.wheels_only.fewest_edges * edges(last_)) return false;
+  if (!carried || !hasEdges(frame_, last_, options_.wheels_only.fewest_edges)) return false;
   bePlacedByWheels(carried->covariance);
   frame_.world_T_camera = carried->world_T_camera;
   frame_.twist.setZero();
@@ -496,6 +520,7 @@ void Tracker::lose(Work& work) {
   FrameResult& result = work.result;
   lost_reason_.clear();
   describe(figures_, lost_reason_);
+  if (followCoarsely(work)) return beLostSince(work.time_ns);
   predict(work.time_ns, lost_reason_, result);
   beLostSince(work.time_ns);
   if (lost_sharp_since_ns_ < 0) lost_sharp_since_ns_ = work.time_ns;

@@ -40,6 +40,10 @@ void UnseenMotion::observe(const FollowedFrame& last, const FollowedFrame& now, 
   located_ns_ = now.images->time_ns;
 }
 
+void UnseenMotion::observeCoarsely(const FollowedFrame& last, const FollowedFrame& now) {
+  motion_.observe(cameraOf(last), cameraOf(now));
+}
+
 void UnseenMotion::forget() {
   motion_.forget();
   inertia_.forget();

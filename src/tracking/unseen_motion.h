@@ -50,6 +50,8 @@ class UnseenMotion {
 
   // Every frame that has a pose, after `last`; `sigma`: standard deviation of its place [map units].
   void observe(const FollowedFrame& last, const FollowedFrame& now, double sigma, const MapView& view);
+  // Only how the camera moves, of a frame that is known coarsely: nothing is measured by it.
+  void observeCoarsely(const FollowedFrame& last, const FollowedFrame& now);
   // What was observed does not go together with what comes: all of it, or how the wheels agree with it.
   void forget();
   void forgetWheels() { wheels_.forget(); }

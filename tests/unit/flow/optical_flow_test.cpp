@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "unit/edges/synthetic_image.h"
 #include "unit/flow/smooth_texture.h"
@@ -69,6 +70,29 @@ TEST(OpticalFlow, FollowsShiftsOfTwentyPixelsWithoutAnyPrediction) {
   }
   EXPECT_GT(textured, 60);
   EXPECT_GT(followed, 0.95 * textured);
+}
+
+TEST(OpticalFlow, ABlurredImageIsFollowedOnCoarserLevels) {
+  const SmoothTexture texture(13);
+  const Eigen::Vector2f shift(7.2f, -4.6f);
+  const ImagePyramid from = pyramidOf(texture.renderShifted(flow_image_size, {0, 0}));
+  cv::Mat blurred;
+  cv::GaussianBlur(texture.renderShifted(flow_image_size, shift.cast<double>()), blurred, {}, 4);
+  const ImagePyramid to = pyramidOf(blurred);
+  FlowOptions coarse;
+  coarse.finest_level = 2;
+  int points = 0, near_coarsely = 0, near_finely = 0;
+  for (const Eigen::Vector2f& pixel : gridOfPixels()) {
+    const auto isNear = [&](const FlowOptions& options) {
+      const FlowMatch match = followPoint(from, to, pixel, pixel + shift + Eigen::Vector2f(1.5f, -1), options);
+      return match.found && (match.pixel - pixel - shift).norm() < 1;
+    };
+    ++points;
+    near_coarsely += isNear(coarse);
+    near_finely += isNear(FlowOptions());
+  }
+  EXPECT_GT(near_coarsely, 0.8 * points);
+  EXPECT_LT(near_finely, 0.7 * near_coarsely);
 }
 
 TEST(OpticalFlow, FollowsUnderRotationAndScale) {

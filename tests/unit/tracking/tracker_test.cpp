@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -251,7 +252,7 @@ TEST(Tracker, ABlackFrameIsPredictedAndTrackingGoesOnAfterIt) {
   EXPECT_LT(distance(next.world_T_camera, path(6)), 0.001);
 }
 
-// Out of focus by so much that the gate takes it for blur, and yet every point is found in it.
+// By default by so much that the gate takes it for blur, and yet every point is found in it.
 cv::Mat outOfFocus(const cv::Mat& image, double sigma_px = 2.5) {
   cv::Mat blurred;
   cv::GaussianBlur(image, blurred, {}, sigma_px);
@@ -269,17 +270,29 @@ TEST(Tracker, ABlurredFrameInWhichTheMapIsFoundIsLocatedAndBecomesNoKeyframe) {
   EXPECT_LT(distance(next.world_T_camera, path(6)), 0.001);
 }
 
-TEST(Tracker, TwoBlurredFramesInARowThatAreLocatedAreAnotherSceneAndNoBlur) {
-  for (const int located : {1, 2}) {
-    Tracked run(4);
-    const auto at = [](int i) { return i * walking_interval_ns; };
-    for (int i = 5; i < 5 + located; ++i) {
-      ASSERT_EQ(track(run.tracker, i, at(i), outOfFocus(imageAt(i))).state, TrackingState::tracking) << i;
-    }
-    const int i = 5 + located;
-    EXPECT_EQ(track(run.tracker, i, at(i), outOfFocus(elsewhere(), 3)).state,
-              located < 2 ? TrackingState::predicted : TrackingState::lost);
-  }
+// By so much that hardly a point is found in it but on coarser levels. Nothing is built on what is known so.
+TEST(Tracker, WhatIsTooBlurredIsFollowedCoarselyAndTheNextFrameFromTheLastSharpOne) {
+  Tracked run(4);
+  const Outcome outcome = track(run.tracker, 5, 5 * walking_interval_ns, outOfFocus(imageAt(5), 5));
+  ASSERT_EQ(outcome.state, TrackingState::tracking) << outcome.reason;
+  EXPECT_EQ(outcome.reason, "followed coarsely: blurred image");
+  EXPECT_FALSE(outcome.tells_mapping);
+  EXPECT_FALSE(run.tracker.hasLostFrame());
+  EXPECT_LT(distance(outcome.world_T_camera, path(5)), 0.01);
+  EXPECT_GT(outcome.covariance(0, 0), 2 * run.outcome.covariance(0, 0)) << "it is known less well";
+  const Outcome next = trackFrame(run.tracker, 6);
+  EXPECT_EQ(next.state, TrackingState::tracking) << next.reason;
+  EXPECT_EQ(next.previous_time_ns, 4 * walking_interval_ns);
+  EXPECT_LT(distance(next.world_T_camera, path(6)), 0.001);
+}
+
+TEST(Tracker, NothingIsFollowedForLongerThanPointsAreLookedForAfterALoss) {
+  Tracked run(4);
+  const TrackerOptions options;
+  const auto after = [&](double seconds) { return 4 * walking_interval_ns + std::llround(1e9 * seconds); };
+  EXPECT_EQ(track(run.tracker, 5, after(0.1), outOfFocus(imageAt(5), 5)).state, TrackingState::tracking);
+  const std::int64_t late_ns = after(0.1 + 1.01 * options.regain_seconds);
+  EXPECT_FALSE(isGoodPose(track(run.tracker, 6, late_ns, outOfFocus(imageAt(5), 5)).state));
 }
 
 TEST(Tracker, WhereBlurHidesMostTracksTheNextFrameIsFollowedFromTheLastSharpOne) {
