@@ -160,7 +160,7 @@ LocationPrior Tracker::priorFor(std::int64_t time_ns, Following how) const {
   return {predicted.world_T_camera,
           mapStands() ? priorOf(predicted) : PosePrior(),
           is_coarse || lost_since_ns_ >= 0 || last_was_found_again_ || frame_is_blurred_,
-          located_in_a_row_ >= 2 && !is_coarse,
+          located_in_a_row_ >= 2,
           is_coarse,
           preparation_.accuracy(),
           motion_.whileRowsAreRead(last_, time_ns, mapStands())};
