@@ -212,7 +212,9 @@ TEST(TrackingWorker, OnlyOneQuestionAtATime) {
 }
 
 TEST(TrackingWorker, LongAfterTheLossTheTracksAreNoHelpAnyMore) {
-  Followed run(3);
+  Settings settings;
+  settings.tracking.new_world_seconds = 1;  // none meanwhile
+  Followed run(3, settings);
   for (int i = 0; i < 15; ++i) {
     run.process(4 + i, (4 + i) * walking_interval_ns, elsewhere());
     run.nextUpdate(run.messages.back().number);
