@@ -114,10 +114,10 @@ bool FrameLocation::locate(const FollowedFrame& last, const MapView& view, const
   const auto in_view = frame.position_is_held ? 0 : static_cast<double>(pose->track_of_observation.size());
   frame.outlier_share = in_view > 0 ? 1 - frame.inlier_count / in_view : 0;
   countOutliers(*pose, view.initialised, frame.tracks);
-  if (!frame.position_is_held && !prior.coarsely) {
-    lockAlongEdges(camera_, view, {frame.world_T_camera, frame.twist}, options_.edge_lock, frame.tracks);
-  }
   if (!prior.coarsely) {
+    if (!frame.position_is_held) {
+      lockAlongEdges(camera_, view, {frame.world_T_camera, frame.twist}, options_.edge_lock, frame.tracks);
+    }
     for (Track& track : frame.tracks) updateAccuracy(to.pyramid.levels[0], prior.accuracy, track);
   }
   clock.finished(Stage::pose);

@@ -40,7 +40,7 @@ struct LocationPrior {
   Pose world_T_predicted;     // from motion alone ...
   PosePrior known;            // ... where that is known well enough to count beside what is measured
   bool regains = false;       // it is blurred or lost, or the frame before was, or was found again by others
-  bool knows_motion = false;  // it and the one before that were located in this map
+  bool knows_motion = false;  // the two frames before were located in this map
   bool coarsely = false;      // the frame shows nothing fine: points count for as much less as their level is coarser
   const PointAccuracy& accuracy;  // of what is measured in this frame
   RowMotion motion;               // tells how the camera moves while its rows are read

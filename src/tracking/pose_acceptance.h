@@ -29,7 +29,7 @@ struct AcceptanceOptions {
 // What a pose is judged against.
 struct AcceptanceContext {
   int inliers_before = 0;     // of the last frame that was located; of one found by others: its map points
-  bool regains = false;       // the frame before was blurred, lost, or found again by others
+  bool regains = false;       // it is blurred or lost, or the frame before was, or was found again by others
   bool knows_motion = false;  // the two frames before were located in this map, so that a motion is expected
   double scene_depth = 1;     // [map units]
   double seconds = 0;         // since the last frame that was located

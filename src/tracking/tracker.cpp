@@ -93,8 +93,8 @@ bool Tracker::track(std::int64_t frame_index, std::int64_t time_ns, const cv::Ma
   frame_.known = {};
   const double without_s = lost_since_ns_ < 0 ? 0 : secondsSince(lost_since_ns_, time_ns);
   const bool any_will_do = !mapStands() || is_lost_ || without_s > options_.blur_gate.longest_rejection_s;
-  frame_is_blurred_ = !is_sharp && !any_will_do;
-  if (frame_is_blurred_) {
+  work.is_blurred = !is_sharp && !any_will_do;
+  if (work.is_blurred) {
     followBlurred(work);
     return false;
   }
@@ -146,7 +146,7 @@ bool Tracker::followCoarsely(Work& work) {
   if (!hasEdges(frame_, last_, options_.coarse_fewest_edges)) return false;
   scratch_.release();
   LocationFigures figures;
-  const LocationPrior prior = priorFor(work.time_ns, Following::coarsely);
+  const LocationPrior prior = priorFor(work, Following::coarsely);
   if (!location_.locate(last_, view_, prior, frame_, figures, scratch_, work.clock)) return false;
   tell(work);
   work.result.reason.assign("followed coarsely: ").append(lost_reason_);
@@ -154,16 +154,16 @@ bool Tracker::followCoarsely(Work& work) {
   return true;
 }
 
-LocationPrior Tracker::priorFor(std::int64_t time_ns, Following how) const {
-  const InertialPrediction predicted = motion_.predict(last_, time_ns, view_);
+LocationPrior Tracker::priorFor(const Work& work, Following how) const {
+  const InertialPrediction predicted = motion_.predict(last_, work.time_ns, view_);
   const bool is_coarse = how == Following::coarsely;
   return {predicted.world_T_camera,
           mapStands() ? priorOf(predicted) : PosePrior(),
-          is_coarse || lost_since_ns_ >= 0 || last_was_found_again_ || frame_is_blurred_,
+          is_coarse || lost_since_ns_ >= 0 || last_was_found_again_ || work.is_blurred,
           located_in_a_row_ >= 2,
           is_coarse,
           preparation_.accuracy(),
-          motion_.whileRowsAreRead(last_, time_ns, mapStands())};
+          motion_.whileRowsAreRead(last_, work.time_ns, mapStands())};
 }
 
 // P13, P14
@@ -190,7 +190,7 @@ bool Tracker::locate(Work& work) {
   const bool is_lost = lost_since_ns_ >= 0;
   if (is_lost && secondsSince(lost_since_ns_, work.time_ns) > options_.regain_seconds) return false;
   scratch_.release();
-  const LocationPrior prior = priorFor(work.time_ns, Following::finely);
+  const LocationPrior prior = priorFor(work, Following::finely);
   const bool is_located = location_.locate(last_, view_, prior, frame_, figures_, scratch_, work.clock);
   if (figures_.is_leap) frame_.tracks.clear();  // nor is it recovered by them
   return is_located;

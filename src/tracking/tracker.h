@@ -46,8 +46,9 @@ struct TrackerOptions {
   int restart_frames = 4;      // ... after so many such frames: mapping may be about to answer [frames]
   // With fewer of the tracks found in a blurred frame, share of them, the next frame is followed from the one before.
   double blurred_tracks_share = 0.5;
-  double coarse_fewest_edges = 0.2;  // with fewer of the edges of the frame before, share of them, nothing is followed
-  double regain_seconds = 0.7;       // so long after a loss the last tracked frame's points are still looked for
+  // Nothing is followed coarsely into a frame with fewer of the edges of the one before, share of them.
+  double coarse_fewest_edges = 0.2;
+  double regain_seconds = 0.7;          // so long after a loss the last tracked frame's points are still looked for
   std::optional<InertialUnit> inertia;  // that goes with the camera; none: the camera alone
   InertiaOnlyOptions inertia_only;
   std::optional<WheelOptions> wheels;  // beneath the camera; none: the camera alone
@@ -130,6 +131,7 @@ class Tracker {
     FrameResult& result;
     TrackedFrame& for_mapping;
     StageClock clock;
+    bool is_blurred = false;  // with a map to follow it in
   };
 
   bool mapStands() const { return view_.initialised; }
@@ -148,7 +150,7 @@ class Tracker {
   void followBlurred(Work& work);
   enum class Following { finely, coarsely };
   bool followCoarsely(Work& work);
-  LocationPrior priorFor(std::int64_t time_ns, Following how) const;
+  LocationPrior priorFor(const Work& work, Following how) const;
   void helpStart(TrackedFrame& for_mapping);
   bool selectKeyframe(bool& located, Work& work);
   void keepEdgesOfStart(FollowedFrame& frame);
@@ -194,7 +196,6 @@ class Tracker {
   FollowedFrame kept_;           // a lost frame that others look for
   KeyframeId kept_number_ = -1;  // that it gets if it is recovered as a keyframe
   bool frame_is_lost_ = false;
-  bool frame_is_blurred_ = false;
   bool is_lost_ = false;                        // the last frame was, and not merely blurred
   std::int64_t lost_since_ns_ = -1;             // or blurred since; -1: neither
   std::int64_t lost_sharp_since_ns_ = -1;       // without the blurred ones; -1: not lost

@@ -11,7 +11,9 @@ namespace {
 void blurEvery(RunResult& run, std::size_t stride) {
   for (std::size_t i = made_initialising_frames; i < run.frames.size(); i += stride) {
     run.frames[i].state = TrackingState::predicted;
-    run.frames[i].reason = "blurred image";
+    const bool is_followed = i / stride % 2 == 1;
+    if (is_followed) run.frames[i].state = TrackingState::tracking;
+    run.frames[i].reason = is_followed ? "followed coarsely: blurred image" : "blurred image";
   }
 }
 
