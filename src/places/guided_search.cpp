@@ -120,35 +120,6 @@ PoseEvidence countEvidence(const RoundResult& round) {
   return evidence;
 }
 
-// Empty where the pose can be trusted.
-std::string reasonToRefuse(const PoseEvidence& evidence, const GuidedSearchOptions& options) {
-  const bool bare = evidence.corner_inliers < options.telling_corners;
-  const bool many = evidence.corner_inliers >= options.many_corners;
-  const double inlier_share = many   ? options.many_corners_inlier_share
-                              : bare ? options.bare_inlier_share
-                                     : options.inlier_share;
-  const double corner_share = many   ? options.many_corners_share
-                              : bare ? options.bare_corner_share
-                                     : options.corner_share;
-  if (evidence.inliers < std::max<double>(options.fewest_inliers, inlier_share * evidence.visible)) {
-    return of(evidence.inliers, evidence.visible, "points in view agree");
-  }
-  if (evidence.visible_corners >= options.fewest_corners &&
-      evidence.corner_inliers < corner_share * evidence.visible_corners) {
-    return of(evidence.corner_inliers, evidence.visible_corners, "corners in view agree");
-  }
-  if (bare && !many && evidence.explained < options.explained_share) {
-    return "only " + std::to_string(static_cast<int>(100 * evidence.explained)) +
-           " % of the frame's edges are the map's";
-  }
-  if (evidence.cells < options.fewest_cells) return "what agrees covers too little of the image";
-  if (!(evidence.position_sigma < options.position_sigma)) return "what agrees leaves the position undetermined";
-  if (!(evidence.rotation_sigma_deg < options.rotation_sigma_deg)) {
-    return "what agrees leaves the rotation undetermined";
-  }
-  return "";
-}
-
 }  // namespace
 
 std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neighbours) {
@@ -210,6 +181,34 @@ ScreenedPose screenPose(const Camera& camera, const Map& map, const std::vector<
   const Round round{options.screening_radius, 2, 6, options.screened_points};
   const RoundResult result = searchOnce(camera, map, points, frame, world_T_camera, options, round);
   return {result.pose.world_T_camera, countEvidence(result)};
+}
+
+std::string reasonToRefuse(const PoseEvidence& evidence, const GuidedSearchOptions& options) {
+  const bool bare = evidence.corner_inliers < options.telling_corners;
+  const bool many = evidence.corner_inliers >= options.many_corners;
+  const double inlier_share = many   ? options.many_corners_inlier_share
+                              : bare ? options.bare_inlier_share
+                                     : options.inlier_share;
+  const double corner_share = many   ? options.many_corners_share
+                              : bare ? options.bare_corner_share
+                                     : options.corner_share;
+  if (evidence.inliers < std::max<double>(options.fewest_inliers, inlier_share * evidence.visible)) {
+    return of(evidence.inliers, evidence.visible, "points in view agree");
+  }
+  if (evidence.visible_corners >= options.fewest_corners &&
+      evidence.corner_inliers < corner_share * evidence.visible_corners) {
+    return of(evidence.corner_inliers, evidence.visible_corners, "corners in view agree");
+  }
+  if (bare && !many && evidence.explained < options.explained_share) {
+    return "only " + std::to_string(static_cast<int>(100 * evidence.explained)) +
+           " % of the frame's edges are the map's";
+  }
+  if (evidence.cells < options.fewest_cells) return "what agrees covers too little of the image";
+  if (!(evidence.position_sigma < options.position_sigma)) return "what agrees leaves the position undetermined";
+  if (!(evidence.rotation_sigma_deg < options.rotation_sigma_deg)) {
+    return "what agrees leaves the rotation undetermined";
+  }
+  return "";
 }
 
 GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std::vector<PointId>& points,

@@ -102,6 +102,9 @@ struct ScreenedPose {
 ScreenedPose screenPose(const Camera& camera, const Map& map, const std::vector<PointId>& points,
                         const SearchedFrame& frame, const Pose& world_T_camera, const GuidedSearchOptions& options);
 
+// Why a pose with this evidence is not to be trusted; empty where it is.
+std::string reasonToRefuse(const PoseEvidence& evidence, const GuidedSearchOptions& options);
+
 // From a screened pose to the final one, or the reason to refuse it.
 GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std::vector<PointId>& points,
                                 const SearchedFrame& frame, const Pose& world_T_camera,

@@ -6,6 +6,8 @@
 #include <set>
 
 #include "geometry/angles.h"
+#include "places/reach.h"
+#include "tracking/measured_noise.h"
 
 namespace edgeslam {
 namespace {
@@ -184,21 +186,24 @@ JudgedLoop LoopClosing::judge(const Map& map, KeyframeId current, const LoopCand
   return judged;
 }
 
-// What an inertial unit or wheels know, no look-alike may contradict.
+// What an inertial unit or wheels know, no look-alike may contradict, nor how far the camera can have come.
 void LoopClosing::refuseWhereKnownOtherwise(const Map& map, KeyframeId current, JudgedLoop& judged) const {
   if (!judged.accepted) return;
   const WorldJoin join = joinOf(map, current, judged.keyframe, judged.verification.current_S_candidate);
-  const std::string why =
+  std::string why =
       contradiction(knownFrame(map, join.from), knownFrame(map, join.to), join.to_S_from, options_.known_frame);
+  if (why.empty() && judged.verification.corner_inliers < options_.telling_corners) why = outOfReach(map, join);
   if (why.empty()) return;
   judged.accepted = false;
   judged.reason = why;
 }
 
-// A loop between worlds that only descriptors accept, where other keyframes said the same before.
+// A loop between worlds that only descriptors accept, or nothing quite, where other keyframes said the same before.
 void LoopClosing::acceptAgreeingJoin(const Map& map, KeyframeId current, JudgedLoop& judged) {
   const LoopVerification& verification = judged.verification;
-  if (judged.accepted || !verification.accepted_by_descriptors || areOfOneWorld(map, current, judged.keyframe)) return;
+  if (judged.accepted || areOfOneWorld(map, current, judged.keyframe)) return;
+  if (!verification.accepted_by_descriptors && !verification.nearly_found) return;
+  if (noiseFactorOf(keyframeOf(map, current), reading_.accuracy) < options_.rough_noise_factor) return;
   const WorldJoin join = joinOf(map, current, judged.keyframe, verification.current_S_candidate);
   const bool is_younger = keyframeOf(map, current).world == join.from;
   const KeyframeId younger = is_younger ? current : judged.keyframe, older = is_younger ? judged.keyframe : current;
@@ -215,9 +220,11 @@ void LoopClosing::acceptAgreeingJoin(const Map& map, KeyframeId current, JudgedL
     if (agrees) agreeing.insert(keyframe);
   }
   proposed_joins_.emplace_back(current, join);
-  judged.accepted = static_cast<int>(agreeing.size()) >= options_.agreeing_keyframes;
-  judged.reason += "; " + std::to_string(agreeing.size()) + " of " + std::to_string(options_.agreeing_keyframes) +
-                   " other keyframes say the same";
+  const int enough =
+      verification.accepted_by_descriptors ? options_.agreeing_keyframes : options_.agreeing_near_keyframes;
+  judged.accepted = static_cast<int>(agreeing.size()) >= enough;
+  judged.reason +=
+      "; " + std::to_string(agreeing.size()) + " of " + std::to_string(enough) + " other keyframes say the same";
 }
 
 }  // namespace edgeslam

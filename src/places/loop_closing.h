@@ -29,14 +29,17 @@ struct LoopClosingOptions {
   double largest_drift = 0.2;         // nor one that would move it by over this share of the way since ...
   double largest_view_turn_deg = 35;  // between two looks at one place that still look alike [deg]
   KnownFrameOptions known_frame;
-  // Between worlds nothing is known beforehand, and their shapes are rough: where the search refuses what descriptors
-  // accept, so many other keyframes that say the same are enough ...
+  // Between worlds nothing is known beforehand, and where a camera errs more than a good one their shapes are rough:
+  // where the search refuses what descriptors accept, so many other keyframes that say the same are enough ...
+  double rough_noise_factor = 1.5;  // from which on that holds; below, shapes are exact, and places that look alike too
   int agreeing_keyframes = 2;
+  int agreeing_near_keyframes = 3;  // ... and so many where the search finds nearly enough, and descriptors do not
   double agreeing_turn_deg = 5;     // [deg]
   double agreeing_distance = 0.15;  // share of the scene's distance
   double agreeing_scale = 0.15;     // of the scale's logarithm
   double largest_world_scale = 10;  // ... of the one unit in the other, or its inverse
-  int pause_keyframes = 5;          // after a loop no other one is looked for, for so many keyframes
+  int telling_corners = 30;  // in agreement: no look-alike, even where the camera cannot have come there in that time
+  int pause_keyframes = 5;   // after a loop no other one is looked for, for so many keyframes
   std::uint64_t seed = 1;
 };
 

@@ -26,7 +26,7 @@ std::vector<PointId> pointsOfOldSide(const Map& map, KeyframeId current, Keyfram
 
 // A keyframe of the current side, located on the old one.
 struct Located {
-  GuidedSearchResult search;
+  GuidedSearchResult search;  // not accepted: nearly, by too few points
   Similarity keyframe_S_candidate;
   std::vector<LoopVerification::Found> found;
 };
@@ -44,16 +44,29 @@ class LoopSearch {
         points_(pointsOfOldSide(map, current, candidate, options.search.neighbours)) {
     // Not even many corners tell a place from its like: what is asked of bare scenes is asked of all.
     search_.telling_corners = search_.many_corners = std::numeric_limits<int>::max();
+    near_search_ = search_;
+    near_search_.bare_inlier_share = options.near_share;
+    near_search_.bare_corner_share = 0;
   }
 
   std::vector<Pose> starts(KeyframeId keyframe, const std::optional<Similarity>& rough) const;
-  // Empty, with the reason, where it is not found on the old side or the scale stays unknown.
+  // Empty, with the reason, where it is not found on the old side, not even nearly, or the scale stays unknown. With a
+  // reason too where it is found nearly.
   std::optional<Located> locate(KeyframeId keyframe, const std::vector<Pose>& starts, std::string& reason) const;
   // What the similarity of another keyframe says of this one, and where that puts it on the old side.
   Similarity carried(KeyframeId keyframe, KeyframeId other, const Similarity& other_S_candidate) const;
   Pose predicted(KeyframeId keyframe, KeyframeId other, const Similarity& other_S_candidate) const;
 
  private:
+  bool isNear(const GuidedSearchResult& search) const {
+    return search.evidence.corner_inliers >= options_.near_corners &&
+           reasonToRefuse(search.evidence, near_search_).empty();
+  }
+  // Where most of the old side is found; the reason says why not enough of it is.
+  std::optional<GuidedSearchResult> find(KeyframeId keyframe, const std::vector<Pose>& starts,
+                                         std::string& reason) const;
+  // Fills the similarity and what was found; false where the scale stays unknown.
+  bool tellScale(KeyframeId keyframe, Located& located, std::string& reason) const;
   ScalePairs pairsOf(KeyframeId keyframe, const GuidedSearchResult& search,
                      std::vector<LoopVerification::Found>& found) const;
 
@@ -62,7 +75,7 @@ class LoopSearch {
   const Map& map_;
   KeyframeId candidate_;
   const LoopSearchOptions& options_;
-  GuidedSearchOptions search_;
+  GuidedSearchOptions search_, near_search_;
   std::vector<PointId> points_;
 };
 
@@ -82,8 +95,8 @@ std::vector<Pose> LoopSearch::starts(KeyframeId keyframe, const std::optional<Si
   return poses;
 }
 
-std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector<Pose>& starts,
-                                          std::string& reason) const {
+std::optional<GuidedSearchResult> LoopSearch::find(KeyframeId keyframe, const std::vector<Pose>& starts,
+                                                   std::string& reason) const {
   const Keyframe& here = map_.keyframes[keyframe];
   const std::shared_ptr<const FrameImages> images = here.images.get();
   const cv::Mat& grey = images->pyramid.levels[0];
@@ -101,7 +114,7 @@ std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector
   });
   if (static_cast<int>(screened.size()) > options_.refined_poses)
     screened.resize(static_cast<std::size_t>(options_.refined_poses));
-  Located best;
+  std::optional<GuidedSearchResult> best;
   reason = "no pose shows the old side";
   for (const ScreenedPose& look : screened) {
     GuidedSearchResult search = guidedSearch(camera_, map_, points_, frame, look.world_T_camera, search_);
@@ -111,37 +124,52 @@ std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector
       search.reason = formatted("%.0f %% of the points found, %.0f %% of the edges explained",
                                 100 * search.evidence.share(), 100 * search.evidence.explained);
     }
-    if (!search.accepted) {
-      if (!best.search.accepted) reason = search.reason;
-      continue;
-    }
-    if (!best.search.accepted || search.evidence.share() > best.search.evidence.share())
-      best.search = std::move(search);
+    if (!search.accepted && !(best && best->accepted)) reason = search.reason;
+    if (!search.accepted && !isNear(search)) continue;
+    if (!best ||
+        std::pair(best->accepted, best->evidence.share()) < std::pair(search.accepted, search.evidence.share()))
+      best = std::move(search);
   }
-  if (!best.search.accepted) return std::nullopt;
+  return best;
+}
 
-  const ScalePairs pairs = pairsOf(keyframe, best.search, best.found);
+std::optional<Located> LoopSearch::locate(KeyframeId keyframe, const std::vector<Pose>& starts,
+                                          std::string& reason) const {
+  std::optional<GuidedSearchResult> search = find(keyframe, starts, reason);
+  if (!search) return std::nullopt;
+  Located located;
+  located.search = std::move(*search);
+  std::string of_scale;
+  const bool is_known = tellScale(keyframe, located, of_scale);
+  if (located.search.accepted) reason = std::move(of_scale);
+  if (!is_known) return std::nullopt;
+  return located;
+}
+
+bool LoopSearch::tellScale(KeyframeId keyframe, Located& located, std::string& reason) const {
+  const GuidedSearchResult& search = located.search;
+  const double agreeing_share = search.accepted ? options_.agreeing_share : options_.near_agreeing_share;
+  const ScalePairs pairs = pairsOf(keyframe, search, located.found);
   const ScaleEstimate scale = estimateScale(pairs);
   if (static_cast<int>(pairs.log_ratios.size()) < options_.fewest_pairs) {
     reason = formatted("%zu points on both sides, %d needed", pairs.log_ratios.size(), options_.fewest_pairs);
-    return std::nullopt;
+    return false;
   }
-  if (scale.agreeing_share < options_.agreeing_share) {
+  if (scale.agreeing_share < agreeing_share) {
     reason = formatted("%.0f %% of the depths agree", 100 * scale.agreeing_share);
-    return std::nullopt;
+    return false;
   }
   if (!(scale.deviation < options_.scale_deviation)) {
     reason = formatted("scale known to %.0f %%", 100 * scale.deviation);
-    return std::nullopt;
+    return false;
   }
-  const Pose keyframe_T_candidate =
-      best.search.pose.world_T_camera.inverse() * map_.keyframes[candidate_].world_T_camera;
+  const Pose keyframe_T_candidate = search.pose.world_T_camera.inverse() * map_.keyframes[candidate_].world_T_camera;
   const double ratio = std::exp(scale.log_scale);
-  best.keyframe_S_candidate = {ratio, keyframe_T_candidate.rotation, ratio * keyframe_T_candidate.translation};
-  reason = formatted("%d of %d points, %.0f %% explained, scale %.3f +- %.3f from %zu", best.search.evidence.inliers,
-                     best.search.evidence.visible, 100 * best.search.evidence.explained, ratio, scale.deviation,
+  located.keyframe_S_candidate = {ratio, keyframe_T_candidate.rotation, ratio * keyframe_T_candidate.translation};
+  reason = formatted("%d of %d points, %.0f %% explained, scale %.3f +- %.3f from %zu", search.evidence.inliers,
+                     search.evidence.visible, 100 * search.evidence.explained, ratio, scale.deviation,
                      pairs.log_ratios.size());
-  return best;
+  return true;
 }
 
 ScalePairs LoopSearch::pairsOf(KeyframeId keyframe, const GuidedSearchResult& search,
@@ -227,11 +255,14 @@ LoopVerification verifyLoopBySearch(const Camera& camera, const ImageReading& re
   std::optional<Similarity> rough;
   if (descriptors.inliers >= options.fewest_rough_inliers) rough = descriptors.current_S_candidate;
   const std::optional<Located> here = search.locate(current, search.starts(current, rough), result.reason);
-  if (!here) return result;
+  if (!here || (!here->search.accepted && descriptors.accepted)) return result;
+  result.nearly_found = !here->search.accepted;
   result.current_S_candidate = here->keyframe_S_candidate;
   result.found = here->found;
   result.inliers = here->search.evidence.inliers;
   result.found_share = here->search.evidence.share();
+  result.corner_inliers = here->search.evidence.corner_inliers;
+  if (result.nearly_found) return result;
 
   // What another keyframe, or the descriptors, say of the current one must be the same.
   const auto contradicts = [&](const Similarity& current_S_candidate) {
@@ -259,7 +290,7 @@ LoopVerification verifyLoopBySearch(const Camera& camera, const ImageReading& re
     std::string reason;
     const std::optional<Located> witness =
         search.locate(keyframe.id, {search.predicted(keyframe.id, current, here->keyframe_S_candidate)}, reason);
-    if (!witness) continue;
+    if (!witness || !witness->search.accepted) continue;
     if (contradicts(search.carried(current, keyframe.id, witness->keyframe_S_candidate))) {
       result.reason += formatted("; keyframe %d contradicts", keyframe.id);
       return result;

@@ -30,9 +30,14 @@ struct LoopSearchOptions {
   double least_correlation = 0.3;     // of the thumbnails, for starts by their turn
   double screened_share = 0.25;       // of the points in view that must agree roughly at the first look
   double found_and_explained = 0.95;  // least sum of the shares of the points found and of the edges explained
-  int fewest_rough_inliers = 8;       // of the descriptors, for a start by their similarity
-  int refined_poses = 3;              // most poses that are followed up from there
-  int scale_neighbours = 4;           // keyframes whose points join those of the current one
+  // Two maps that are bent fit each other in a part only. A pose by so much less may be right: others must say the
+  // same.
+  double near_share = 0.25;          // of the points in view,
+  int near_corners = 20;             // with so many corners: up to that many agree where a place only looks alike
+  double near_agreeing_share = 0.4;  // of the pairs that must agree on the scale then
+  int fewest_rough_inliers = 8;      // of the descriptors, for a start by their similarity
+  int refined_poses = 3;             // most poses that are followed up from there
+  int scale_neighbours = 4;          // keyframes whose points join those of the current one
   double pair_across = 2;         // points of both sides so near in the image are one piece of edge: across it [px] ...
   double pair_along = 6;          // ... in all [px] ...
   double pair_dot = 0.9;          // ... and with its normal, dot product
@@ -70,11 +75,13 @@ struct LoopVerificationOptions {
 struct LoopVerification {
   bool accepted = false;
   bool accepted_by_descriptors = false;  // and by patches, but not by the search, as it may be: similarity, found
+  bool nearly_found = false;             // by the search, and not accepted by anything: similarity, found, inliers
   std::string reason;                    // why not, or what speaks for it, in words
   Similarity current_S_candidate;        // camera coordinates of the candidate to those of the current keyframe
   int descriptor_pairs = 0, descriptor_inliers = 0;
   int inliers = 0, needed_inliers = 0;
   double found_share = 0;
+  int corner_inliers = 0;  // of the inliers of the search
   // Points of the candidate's side found in the current keyframe that agree with the similarity.
   struct Found {
     PointId candidate_point = 0;

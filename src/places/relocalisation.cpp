@@ -8,8 +8,6 @@
 namespace edgeslam {
 namespace {
 
-constexpr double longest_step_s = 10;  // between successive keyframes of one run
-
 // Two sizes of the patch on either side bridge distances that differ by up to twice; more would only cost.
 DescribedPoints describeAtTwoSizes(const cv::Mat& grey, const std::vector<Eigen::Vector2f>& pixels, double roll) {
   DescribedPoints described = describePoints(grey, pixels, roll);
@@ -24,20 +22,6 @@ bool isReachable(const std::optional<Reachable>& reachable, int world, const Pos
 }
 
 }  // namespace
-
-Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double seconds, int world) {
-  double fastest = 0, farthest = 0;
-  for (std::size_t place = 1; place < map.keyframes.size(); ++place) {
-    const Keyframe &a = map.keyframes.atPlace(place - 1), &b = map.keyframes.atPlace(place);
-    if (a.world != world || b.world != world) continue;
-    const double elapsed = 1e-9 * static_cast<double>(b.time_ns - a.time_ns);
-    if (elapsed <= 0 || elapsed > longest_step_s) continue;  // between two runs there is no motion to learn from
-    const double distance = (b.world_T_camera.translation - a.world_T_camera.translation).norm();
-    farthest = std::max(farthest, distance);
-    fastest = std::max(fastest, distance / elapsed);
-  }
-  return {world_T_camera.translation, std::max(farthest, 2 * fastest * seconds), world};
-}
 
 void Relocalisation::addKeyframe(const Keyframe& keyframe) {
   if (!keyframe.images) return;

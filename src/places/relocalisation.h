@@ -12,6 +12,7 @@
 #include "edges/point_choice.h"
 #include "places/guided_search.h"
 #include "places/keyframe_matching.h"
+#include "places/reach.h"
 #include "places/thumbnail.h"
 
 namespace edgeslam {
@@ -38,17 +39,6 @@ struct RelocalisationOptions {
   double descriptor_error = 5;     // reprojection error within which a match agrees [px]
   int ransac_iterations = 150;
 };
-
-// Where the camera can be by now.
-struct Reachable {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // world
-  double distance = 0;                               // [map units]
-  int world = 0;                                     // that both are of
-};
-
-// From the pose at which the camera was lost `seconds` ago: twice as far as the fastest motion between two keyframes of
-// the map would have led, and never less than the farthest that two successive ones lie apart.
-Reachable reachableFrom(const Map& map, const Pose& world_T_camera, double seconds, int world = 0);
 
 struct RelocalisationResult {
   bool found = false;

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "geometry/angles.h"
 #include "mapping/global_adjustment.h"
 #include "places/loop_closing.h"
+#include "unit/map/change_each.h"
 #include "unit/places/made_place.h"
 
 namespace edgeslam {
@@ -33,9 +35,10 @@ bool sortedAndWhole(const Map& map) {
 Map firstKeyframes(const Map& map, std::size_t count) {
   Map part;
   for (std::size_t k = 0; k < count; ++k) part.keyframes.push_back(map.keyframes.atPlace(k));
+  const KeyframeId latest = part.keyframes.back().id;
   for (auto [id, point] : map.points) {
-    if (static_cast<std::size_t>(point.host) >= count) continue;
-    while (!point.seen_in.empty() && static_cast<std::size_t>(point.seen_in.back()) >= count) point.seen_in.pop_back();
+    if (point.host > latest) continue;
+    while (!point.seen_in.empty() && point.seen_in.back() > latest) point.seen_in.pop_back();
     if (!point.seen_in.empty()) part.points.emplace(id, point);
   }
   return part;
@@ -280,24 +283,33 @@ TEST_F(LoopCorrectionTest, LoopsThatContradictEachOtherAreRefused) {
   }
 }
 
-// The last keyframes are of a world of their own, with another frame and unit.
-TEST_F(LoopCorrectionTest, JoinsTwoWorldsThatAreOne) {
-  Map map = *place;
-  constexpr KeyframeId first_of_young = test::keyframes_a_turn - 3;
+const WorldJoin apart{5, 1, {0.4, Eigen::Quaterniond(rotationExp({0.3, 1.1, -0.5})), {3, -2, 7}}};
+
+// No point is seen both before a keyframe and from it on.
+void cutBefore(KeyframeId first, Map& map) {
   for (auto& [id, point] : map.points) {
-    const bool is_young = point.host >= first_of_young;
+    const bool is_later = point.host >= first;
     std::vector<KeyframeId>& seen_in = point.seen_in;
     seen_in.erase(std::remove_if(seen_in.begin(), seen_in.end(),
-                                 [&](KeyframeId keyframe) { return (keyframe >= first_of_young) != is_young; }),
+                                 [&](KeyframeId keyframe) { return (keyframe >= first) != is_later; }),
                   seen_in.end());
   }
   for (auto point = map.points.begin(); point != map.points.end();) {
     point = point->second.seen_in.empty() ? map.points.erase(point) : std::next(point);
   }
-  const WorldJoin apart{5, 1, {0.4, Eigen::Quaterniond(rotationExp({0.3, 1.1, -0.5})), {3, -2, 7}}};
+}
+
+// The last keyframes are of a world of their own, with another frame and unit.
+constexpr KeyframeId first_of_young = test::keyframes_a_turn - 3;
+Map inTwoWorlds(Map map) {
+  cutBefore(first_of_young, map);
   for (Keyframe& keyframe : map.keyframes) keyframe.world = keyframe.id >= first_of_young ? apart.from : 0;
   joinWorlds(apart, map);
+  return map;
+}
 
+TEST_F(LoopCorrectionTest, JoinsTwoWorldsThatAreOne) {
+  Map map = inTwoWorlds(*place);
   LoopVerificationOptions of_any_scale;
   of_any_scale.largest_scale = 10;
   const LoopVerification loop = verifyLoop(camera, {}, map, test::keyframes_a_turn + 2, 2, of_any_scale, 1);
@@ -312,6 +324,68 @@ TEST_F(LoopCorrectionTest, JoinsTwoWorldsThatAreOne) {
   EXPECT_EQ(worldsOf(map), std::vector<int>{0});
   EXPECT_LT(test::positionError(map, *truth), 0.3);
   EXPECT_TRUE(sortedAndWhole(map));
+}
+
+// Neither descriptors nor the search accept a loop.
+LoopClosingOptions nothingSuffices() {
+  LoopClosingOptions options;
+  options.detection.recent_keyframes = 8;
+  options.verification.fewest_descriptor_inliers = 1000;
+  options.verification.search.search.bare_inlier_share = 1.01;
+  return options;
+}
+
+// The loop that joins the worlds, if there is one.
+std::optional<LoopOutcome> firstJoin(const Map& map, double noise_factor, const LoopClosingOptions& options) {
+  const PointAccuracyOptions presumed;
+  Map rough = map;
+  for (Keyframe& keyframe : rough.keyframes) {
+    test::changeEach(keyframe.observations, [&](PointObservation& seen) {
+      seen.measurement.sigma_normal = noise_factor * (seen.corner ? presumed.sigma_corner : presumed.sigma_edge);
+    });
+  }
+  LoopClosing closing(test::placeCamera(), {}, options);
+  for (std::size_t count = 1; count <= rough.keyframes.size(); ++count) {
+    LoopOutcome outcome = closing.addKeyframe(firstKeyframes(rough, count));
+    if (outcome.correction) return outcome;
+  }
+  return std::nullopt;
+}
+
+TEST_F(LoopCorrectionTest, WhatIsNearlyFoundJoinsWorldsWhereOtherKeyframesSayTheSame) {
+  const Map map = inTwoWorlds(*place);
+  LoopClosingOptions options = nothingSuffices();
+  options.agreeing_near_keyframes = 1;
+  const std::optional<LoopOutcome> outcome = firstJoin(map, 2, options);
+  ASSERT_TRUE(outcome);
+  EXPECT_GE(outcome->current, test::keyframes_a_turn - 1);
+  const std::optional<WorldJoin>& join = outcome->correction->join;
+  ASSERT_TRUE(join);
+  EXPECT_NEAR(join->to_S_from.scale, 1 / apart.to_S_from.scale, 0.2 / apart.to_S_from.scale);
+  EXPECT_FALSE(outcome->correction->observations.empty());
+
+  EXPECT_FALSE(firstJoin(map, 1, options)) << "where a camera is good, what is right is found";
+  options.agreeing_near_keyframes = 20;
+  EXPECT_FALSE(firstJoin(map, 2, options)) << "so many keyframes there are not";
+}
+
+TEST_F(LoopCorrectionTest, NoJoinTakesTheCameraFartherThanItCanHaveCome) {
+  Map map = inTwoWorlds(*place);
+  LoopClosingOptions options;
+  options.detection.recent_keyframes = 8;
+  options.telling_corners = 10'000;
+  EXPECT_TRUE(firstJoin(map, 1, options));
+  // It was lost on the other side of the circle, and the young world was begun 0.4 s later.
+  constexpr KeyframeId lost_at = 12;
+  cutBefore(lost_at, map);
+  for (Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id >= first_of_young) keyframe.time_ns -= (first_of_young - lost_at) * 400'000'000LL;
+    if (keyframe.id >= lost_at && keyframe.id < first_of_young) keyframe.world = 7;
+  }
+  forgetWorld(map, 7);
+  EXPECT_FALSE(firstJoin(map, 1, options));
+  options.telling_corners = 1;
+  EXPECT_TRUE(firstJoin(map, 1, options)) << "no look-alike has so many corners: time was left out";
 }
 
 }  // namespace

@@ -235,20 +235,5 @@ TEST(Relocalisation, KeyframesWithoutImagesArePassedOver) {
   EXPECT_LT(distanceApart(result.world_T_camera, truth), 0.02);
 }
 
-TEST(ReachableFrom, GrowsWithTimeAndNeverBelowAStep) {
-  Map map;
-  for (int k = 0; k < 4; ++k) {
-    Keyframe keyframe;
-    keyframe.id = k;
-    keyframe.time_ns = k * 500000000LL;
-    keyframe.world_T_camera.translation = {0.1 * k * k, 0, 0};  // the last step: 0.5 in half a second
-    map.keyframes.push_back(keyframe);
-  }
-  const Pose last = map.keyframes.back().world_T_camera;
-  EXPECT_DOUBLE_EQ(reachableFrom(map, last, 0).distance, 0.5);
-  EXPECT_NEAR(reachableFrom(map, last, 3).distance, 2 * 1.0 * 3, 1e-9);
-  EXPECT_EQ(reachableFrom(map, last, 3).centre, last.translation);
-}
-
 }  // namespace
 }  // namespace edgeslam::test
