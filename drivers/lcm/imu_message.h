@@ -1,4 +1,5 @@
-// What the robot's inertial unit measured, as others publish it: edgeslam.imu_t.
+// What the robot's inertial unit measured, as others publish it: edgeslam.imu_t, or bot_core.ins_t, of which rate and
+// force alone are used.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 
 namespace edgeslam {
 
-// None where the bytes are no imu_t, or it is nothing that a unit can have measured (isUsable()), or its time stamp is
+// None where the bytes are neither, or it is nothing that a unit can have measured (isUsable()), or its time stamp is
 // negative or over 4e15 us.
 std::optional<InertialSample> checkImu(const void* data, std::size_t bytes);
 

@@ -27,7 +27,7 @@ struct LcmOptions {
   std::string answer_channel = "SLAM_ANSWER";
   // of the robot's wheel odometry (pose_t), which is listened to; empty: none
   std::string wheels_channel;
-  // of the robot's inertial unit (imu_t), likewise
+  // of the robot's inertial unit (imu_t or ins_t), likewise
   std::string imu_channel;
 };
 

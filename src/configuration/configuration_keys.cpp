@@ -105,7 +105,9 @@ Keys imuKeys(InertiaConfiguration& inertia) {
       {"imu.enabled", &inertia.is_used, "", 0, 0,
        "its data are used: of live runs from LCM, of recorded frames those that lie beside them"},
       text("imu.channel", &inertia.channel,
-           "of LCM, where it is published as edgeslam.imu_t, with time stamps of CLOCK_MONOTONIC as the camera's"),
+           "of LCM, where it is published as edgeslam.imu_t or bot_core.ins_t, with time stamps of CLOCK_MONOTONIC as "
+           "the "
+           "camera's"),
       special(
           "imu.calibration",
           "file with the unit (imu.yaml, docs/files.md), relative to this file; or its keys in its place:", "imu.yaml"),

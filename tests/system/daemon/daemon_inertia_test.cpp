@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "edgeslam/imu_t.hpp"
+#include "edgeslam/ins_t.hpp"
 #include "frames/inertial_file.h"
 #include "system/daemon/beside_frames.h"
 #include "system/daemon/daemon_fixture.h"
@@ -12,8 +13,16 @@
 namespace edgeslam {
 namespace {
 
-// In bursts, and among messages that are nothing of a unit's.
+// By both types in turn, in bursts, and among messages that are nothing of a unit's.
 void publish(lcm::LCM& lcm, const InertialSample& sample, std::size_t index) {
+  if (index % 2 == 1) {
+    ins_t published{};
+    published.utime = sample.time_ns / 1000;
+    std::copy_n(sample.rate.data(), 3, published.gyro);
+    std::copy_n(sample.force.data(), 3, published.accel);
+    lcm.publish("IMU", &published);
+    return;
+  }
   imu_t message{};
   message.utime = sample.time_ns / 1000;
   std::copy_n(sample.rate.data(), 3, message.rotation_rate);
