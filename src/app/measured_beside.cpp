@@ -5,6 +5,7 @@
 
 #include "frames/inertial_file.h"
 #include "frames/wheel_file.h"
+#include "inertia/sample_gap_watch.h"
 #include "inertia/saturation_watch.h"
 #include "recording/recording_source.h"
 
@@ -24,8 +25,9 @@ std::vector<Sample> recorded(const Recording& recording, const std::vector<Given
 
 // What is wrong with them, but not so much that they cannot be used.
 std::vector<InertialSample> toldOf(const InertialFiles& files, std::vector<InertialSample> samples) {
-  const std::string problem = saturationProblem(samples);
-  if (!problem.empty()) std::cerr << "edgeslam: " << files.samples << ": " << problem << "\n";
+  for (const std::string& problem : {sampleGapProblem(samples), saturationProblem(samples)}) {
+    if (!problem.empty()) std::cerr << "edgeslam: " << files.samples << ": " << problem << "\n";
+  }
   return samples;
 }
 

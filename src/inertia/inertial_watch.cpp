@@ -22,6 +22,7 @@ std::string unitsProblem(double median_force, double median_rate) {
 
 void InertialWatch::add(const InertialSample& sample) {
   arrivals_.add(sample.time_ns);
+  gaps_.add(sample.time_ns);
   saturation_.add(sample);
   rates_[count_ % rates_.size()] = sample.rate.norm();
   forces_[count_++ % forces_.size()] = sample.force.norm();
@@ -33,6 +34,7 @@ std::string InertialWatch::problem() const {
   std::vector<double> forces(forces_.begin(), forces_.end()), rates(rates_.begin(), rates_.end());
   std::string wrong = unitsProblem(upperMedian(std::move(forces)), upperMedian(std::move(rates)));
   if (wrong.empty()) wrong = arrivals_.timingProblem();
+  if (wrong.empty()) wrong = gaps_.problem();
   return wrong.empty() ? saturation_.problem() : wrong;
 }
 

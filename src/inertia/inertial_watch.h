@@ -1,4 +1,5 @@
-// Tells what is wrong with what an inertial unit gives, from the data alone: its units, its range, and how it comes.
+// Tells what is wrong with what an inertial unit gives, from the data alone: its units, its range, gaps, and how it
+// comes.
 #pragma once
 
 #include <array>
@@ -6,6 +7,7 @@
 #include <string>
 
 #include "inertia/inertial_unit.h"
+#include "inertia/sample_gap_watch.h"
 #include "inertia/saturation_watch.h"
 #include "samples/arrival_watch.h"
 
@@ -29,6 +31,7 @@ class InertialWatch {
 
  private:
   ArrivalWatch arrivals_;
+  SampleGapWatch gaps_;
   SaturationWatch saturation_;
   std::array<double, ArrivalWatch::window> rates_{}, forces_{};  // rings: lengths [rad/s], [m/s^2]
   std::size_t count_ = 0;                                        // ever
