@@ -63,6 +63,12 @@ void tellInertia(const RunResult& result) {
     std::printf("found on the way: the inertial unit's clock differs by %.1f ms +- %.1f (time_offset_s: %.4f)\n",
                 1e3 * offset_s, 1e3 * result.time_offset->sigma_s, offset_s);
   }
+  if (result.unit_rotation) {
+    const Eigen::Quaterniond& q = result.unit_rotation->imu_R_camera;
+    std::printf("found on the way: how the inertial unit is turned, +- %.2f degrees (imu_T_camera, ",
+                degrees(result.unit_rotation->sigma_rad));
+    std::printf("quaternion: [%.6f, %.6f, %.6f, %.6f])\n", q.w(), q.x(), q.y(), q.z());
+  }
   const auto known = result.inertia.find(result.main_world);
   if (known != result.inertia.end()) {
     std::printf("lengths are metres (+- %.1f %%), and z is up, by inertia\n", 100 * known->second.scale_sigma);

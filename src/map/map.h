@@ -7,6 +7,7 @@
 
 #include "geometry/found_camera.h"
 #include "inertia/found_time_offset.h"
+#include "inertia/found_unit_rotation.h"
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
 #include "wheels/wheel_scale.h"
@@ -35,6 +36,8 @@ struct Map {
   std::map<int, WheelScale> wheels;            // by world, where there are wheels
   FoundCamera found;                           // what all rays here were taken with
   std::optional<FoundTimeOffset> time_offset;  // that links were measured with, where it is not the one that was given
+  std::optional<FoundUnitRotation> unit_rotation;  // of the inertial unit, where it is not the one that was given
+  bool unit_is_left_out = false;  // it contradicts the camera: what it felt between keyframes does not count
 };
 
 // A keyframe to read, of a map that may be changed too.

@@ -9,6 +9,7 @@
 
 #include "geometry/found_camera.h"
 #include "inertia/found_time_offset.h"
+#include "inertia/found_unit_rotation.h"
 #include "inertia/inertial_alignment.h"
 #include "map/keyframe_table.h"
 #include "wheels/wheel_scale.h"
@@ -48,6 +49,8 @@ struct MapView {
   WheelScale wheels;                           // of the world
   FoundCamera found;                           // of the camera, beside its calibration
   std::optional<FoundTimeOffset> time_offset;  // of the inertial unit's clock, where it is not the one that was given
+  std::optional<FoundUnitRotation> unit_rotation;  // likewise, how it is turned against the camera
+  bool unit_is_left_out = false;                   // it contradicts the camera, which goes on alone
   KeyframeTable<ViewKeyframe> keyframes;
   std::vector<ViewPoint> points;  // sorted by id
 };

@@ -115,10 +115,11 @@ std::vector<KeyframeId> allThatSeeTheLines(const LineOptions& options, const Map
   return {all.begin(), all.end()};
 }
 
-// How the keyframe's world lies to the earth; null where that is not known, or there is no unit.
+// How the keyframe's world lies to the earth; null where that is not known, or there is no unit that counts.
 const InertialAlignment* alignmentOf(const LocalAdjustmentOptions& options, const Map& map, KeyframeId keyframe) {
   const auto known = map.inertia.find(map.keyframes[keyframe].world);
-  return options.inertia && known != map.inertia.end() ? &known->second : nullptr;
+  const bool has_unit = options.inertia && !map.unit_is_left_out;
+  return has_unit && known != map.inertia.end() ? &known->second : nullptr;
 }
 
 WheelScale wheelScaleOf(const Map& map, int world) {
@@ -216,12 +217,16 @@ bool adjustKeyframes(const Camera& camera, const LocalAdjustmentOptions& options
   addMotionAlongLines(camera, map, lines.lines, indexOf, problem);
   const InertialAlignment* const alignment = alignmentOf(options, map, ordered_free.front());
   if (alignment) {
-    addInertialTerms(*options.inertia, *alignment, options.inertia_is_free, map, ordered_free, cameraOf, problem);
+    addInertialTerms(turnedAsFound(*options.inertia, map.unit_rotation), *alignment, options.inertia_is_free, map,
+                     ordered_free, cameraOf, problem);
   }
   if (options.wheels) {
     const WheelScale scale = wheelScaleOf(map, map.keyframes[ordered_free.front()].world);
     std::optional<GyroscopeBeside> gyroscope;
-    if (alignment) gyroscope = {options.inertia->imu_T_camera.rotation.conjugate(), alignment->bias};
+    if (alignment) {
+      const InertialUnit unit = turnedAsFound(*options.inertia, map.unit_rotation);
+      gyroscope = {unit.imu_T_camera.rotation.conjugate(), alignment->bias};
+    }
     addWheelTerms(*options.wheels, scale, gyroscope, map, ordered_free, cameraOf, problem);
     if (!problem.ways.empty()) problem.scale_camera = -1;  // the wheels hold the scale
     if (scale.is_known) {

@@ -12,6 +12,8 @@
 namespace edgeslam {
 namespace {
 
+constexpr const char* unit_is_turned_otherwise =
+    "inertia: the unit seems to be turned otherwise than imu_T_camera says; calibrate it";
 constexpr std::int64_t little_offset_ns = 1'500'000;  // a change of the unit's clock that bends no map
 
 // Of recovered points, at least one, from the keyframe that hosts them [map units].
@@ -163,6 +165,7 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   adjustLocally(camera_, options_.local_adjustment, map_);
   findCamera();
   findTimeOffset(frame);
+  findUnitRotation();
   alignToEarth();
   scaleByWheels();
   const std::vector<CulledKeyframe> culled = cullKeyframes(options_.culling, map_, candidates_);
@@ -186,7 +189,7 @@ void Mapper::takeCamera(const Camera& camera) {
 
 // Told to tracking by the view. What comes too late to be of use with it stays as it is.
 void Mapper::findTimeOffset(const TrackedFrame& keyframe) {
-  if (!time_offset_finding_) return;
+  if (!time_offset_finding_ || map_.unit_is_left_out) return;
   time_offset_finding_->add(keyframe.time_ns, keyframe.felt, keyframe.turns);
   const std::optional<FoundTimeOffset>& found = time_offset_finding_->found();
   if (!found || (!map_.time_offset && !time_offset_finding_->comesInTime())) return;
@@ -196,6 +199,36 @@ void Mapper::findTimeOffset(const TrackedFrame& keyframe) {
   map_.time_offset = found;
   takeLinksAnew(unit, time_offset_finding_->samples(), map_);
   if (std::abs(found->offset_ns - before_ns) > little_offset_ns) alignAnew();
+}
+
+InertialUnit Mapper::unitAsFound() const {
+  InertialUnit unit = turnedAsFound(*options_.local_adjustment.inertia, map_.unit_rotation);
+  if (const std::optional<FoundTimeOffset>& offset = time_offset_finding_->found()) unit.offset_ns = offset->offset_ns;
+  return unit;
+}
+
+// Likewise.
+void Mapper::findUnitRotation() {
+  if (!unit_rotation_finding_ || map_.unit_is_left_out) return;
+  const bool is_another = unit_rotation_finding_->look(time_offset_finding_->frames(), time_offset_finding_->samples(),
+                                                       unitAsFound().offset_ns);
+  if (unit_rotation_finding_->tooFar() > 0) leaveUnitOut(unit_is_turned_otherwise, 0);
+  if (!is_another) return;
+  map_.unit_rotation = unit_rotation_finding_->found();
+  const bool bends_map = unit_rotation_finding_->bendsMap();
+  time_offset_finding_->setRotation(map_.unit_rotation->imu_R_camera, bends_map);
+  if (bends_map) alignAnew();
+}
+
+// The camera goes on alone. What the unit said of scale and gravity before it was wrong stays.
+void Mapper::leaveUnitOut(const char* why, std::int64_t wrong_since_ns) {
+  map_.unit_is_left_out = true;
+  lacking_ = why;
+  InertialAlignment& alignment = map_.inertia[world_];
+  alignment.is_known = alignment.is_known && metric_since_ns_ < wrong_since_ns;
+  adjustGlobally(camera_, options_.global_adjustment, options_.local_adjustment, map_);
+  renewUncertainty(camera_, options_.uncertainty, map_);
+  ++corrections_;
 }
 
 // Where links were far off, the map is adjusted by the right ones, and how it lies to the earth is found once more.
@@ -222,13 +255,13 @@ const InertialAlignment* Mapper::knownAlignment() const {
 // bends a map looks like another scale or bias to the one alone. Once they are known, they follow each keyframe, and
 // now and then all is adjusted together again, until the scale is known well.
 void Mapper::alignToEarth() {
-  if (!options_.local_adjustment.inertia) return;
+  if (!options_.local_adjustment.inertia || map_.unit_is_left_out) return;
   InertialAlignment& alignment = map_.inertia[world_];
   const bool was_known = alignment.is_known;
   const WheelScale* const wheels = knownWheelScale();
   const InertialAlignmentEstimate estimate =
-      estimateInertialAlignment(*options_.local_adjustment.inertia, options_.inertial_alignment, map_, world_,
-                                alignment, wheels ? *wheels : WheelScale());
+      estimateInertialAlignment(turnedAsFound(*options_.local_adjustment.inertia, map_.unit_rotation),
+                                options_.inertial_alignment, map_, world_, alignment, wheels ? *wheels : WheelScale());
   lacking_ = estimate.lacking;
   if (was_known) {
     // Of a saved map the gyroscope's bias is found before the others.
@@ -256,6 +289,7 @@ void Mapper::alignWithMap(const InertialAlignment& start) {
     if (!start.is_known) lacking_ = speed_changes_too_little;
     return;
   }
+  if (!map_.inertia[world_].is_known) metric_since_ns_ = map_.keyframes.back().time_ns;
   alignment.is_known = alignment.is_bias_known = true;
   lacking_.clear();
   map_ = std::move(aligned);
@@ -356,6 +390,8 @@ MapView Mapper::view(KeyframeId centre) const {
   view.initialised = initialised_;
   view.found = map_.found;
   view.time_offset = map_.time_offset;
+  view.unit_rotation = map_.unit_rotation;
+  view.unit_is_left_out = map_.unit_is_left_out;
   view.version = version_;
   view.corrections = corrections_;
   view.origin_frame = origin_frame_;

@@ -18,6 +18,7 @@
 #include "mapping/new_points.h"
 #include "mapping/time_offset_finding.h"
 #include "mapping/track_loss_recovery.h"
+#include "mapping/unit_rotation_finding.h"
 #include "mapping/view_of_map.h"
 #include "mapping/wheel_scale_estimate.h"
 
@@ -61,7 +62,9 @@ class Mapper {
         options_(options),
         initialisation_(camera, options.initialisation),
         camera_finding_(options.camera_finding) {
-    if (options.local_adjustment.inertia) time_offset_finding_.emplace(*options.local_adjustment.inertia);
+    if (!options.local_adjustment.inertia) return;
+    time_offset_finding_.emplace(*options.local_adjustment.inertia);
+    unit_rotation_finding_.emplace(*options.local_adjustment.inertia);
   }
 
   // Before the first frame: continues a map made earlier, of the same camera.
@@ -114,6 +117,10 @@ class Mapper {
   std::optional<FoundTimeOffset> foundTimeOffset() const {
     return time_offset_finding_ ? time_offset_finding_->found() : std::nullopt;
   }
+  // How the unit is turned against the camera, likewise.
+  const std::optional<FoundUnitRotation>& foundUnitRotation() const { return map_.unit_rotation; }
+  // By how much it seems to be turned otherwise than is given, where that is too far to be used [rad]; else 0.
+  double unitRotationTooFar() const { return unit_rotation_finding_ ? unit_rotation_finding_->tooFar() : 0; }
   // Poses of the frames before their maps stood, with the worlds as they are now.
   std::vector<EarlyPose> earlyPoses() const;
 
@@ -135,6 +142,9 @@ class Mapper {
   void findCamera();
   void takeCamera(const Camera& camera);
   void findTimeOffset(const TrackedFrame& keyframe);
+  InertialUnit unitAsFound() const;
+  void findUnitRotation();
+  void leaveUnitOut(const char* why, std::int64_t wrong_since_ns);
   void alignAnew();
   void alignToEarth();
   void scaleByWheels();
@@ -145,7 +155,9 @@ class Mapper {
   MapperOptions options_;
   Initialisation initialisation_;
   CameraFinding camera_finding_;
-  std::optional<TimeOffsetFinding> time_offset_finding_;  // where there is an inertial unit
+  std::optional<TimeOffsetFinding> time_offset_finding_;      // where there is an inertial unit
+  std::optional<UnitRotationFinding> unit_rotation_finding_;  // likewise
+  std::int64_t metric_since_ns_ = 0;                          // when it was last found how a world lies to the earth
   Map map_;
   Candidates candidates_;
   std::string first_description_, description_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "inertia/inertial_history.h"
+#include "inertia/samples_since.h"
 
 namespace edgeslam {
 namespace {
@@ -43,6 +44,11 @@ bool TimeOffsetFinding::comesInTime() const {
          secondsBetween(least_ahead_ns, found_->offset_ns) <= InertialHistory::longest_wait_s;
 }
 
+void TimeOffsetFinding::setRotation(const Eigen::Quaterniond& imu_R_camera, bool was_map_bent) {
+  unit_.imu_T_camera.rotation = imu_R_camera;
+  if (was_map_bent) frames_.clear();
+}
+
 void TimeOffsetFinding::keepSamples(const std::vector<InertialSample>& felt) {
   for (const InertialSample& sample : felt) {
     if (!samples_.empty() && sample.time_ns <= samples_.back().time_ns) samples_.clear();  // its clock was set back
@@ -76,10 +82,8 @@ bool TimeOffsetFinding::look() {
   const double farthest_s = 1e-9 * static_cast<double>(farthest_time_offset_ns);
   // Samples of the frames looked at alone.
   const std::int64_t begin_ns = frames_.front().time_ns + unit_.offset_ns - 2 * farthest_time_offset_ns;
-  const auto begin = std::lower_bound(samples_.begin(), samples_.end(), begin_ns,
-                                      [](const InertialSample& s, std::int64_t time) { return s.time_ns < time; });
   const std::optional<TimeOffsetEstimate> estimate =
-      estimateTimeOffset(frames_, {begin, samples_.end()}, unit_, given_s, farthest_s);
+      estimateTimeOffset(frames_, samplesSince(samples_, begin_ns), unit_, given_s, farthest_s);
   if (!estimate || estimate->seconds < shortest_looked_at_s || !(estimate->sigma_s < known_offset_s)) return false;
   if (!isToChange(*estimate)) return false;
   // Frames were posed in a map that the gyroscope has bent towards the offset that was.

@@ -26,6 +26,10 @@ class TimeOffsetFinding {
   bool comesInTime() const;
   // What the unit measured lately: times ascend.
   const std::vector<InertialSample>& samples() const { return samples_; }
+  // The latest frames that it looks at: worlds are stretches in which no frame is missing.
+  const std::vector<PosedCamera>& frames() const { return frames_; }
+  // The unit is turned otherwise from now on. What the map was bent by before goes, if it was.
+  void setRotation(const Eigen::Quaterniond& imu_R_camera, bool was_map_bent);
 
  private:
   void keepSamples(const std::vector<InertialSample>& felt);

@@ -1,6 +1,7 @@
 #include "pipeline/mapping_worker.h"
 
 #include "files/format_text.h"
+#include "geometry/angles.h"
 
 namespace edgeslam {
 namespace {
@@ -75,6 +76,8 @@ std::optional<MapUpdate> MappingWorker::handle(const MappingMessage& message) {
   }
   tellOfCamera();
   tellOfTimeOffset();
+  tellOfUnitRotation();
+  tellOfUnitLeftOut();
   if (const std::string lacking = lackingForMetres(); lacking != lacking_for_metres_) {
     report(last_frame_).lacking_for_metres = lacking_for_metres_ = lacking;
   }
@@ -137,6 +140,31 @@ void MappingWorker::tellOfTimeOffset() {
       "the inertial unit's clock differs from the camera's by %.1f ms +- %.1f: with time_offset_s: %.4f beside "
       "imu_T_camera this is known from the start",
       1e3 * offset_s, 1e3 * found->sigma_s, offset_s));
+}
+
+void MappingWorker::tellOfUnitRotation() {
+  constexpr double worth_telling = radians(0.3);
+  const std::optional<FoundUnitRotation>& found = mapper_.foundUnitRotation();
+  if (!found || (told_imu_R_camera_ && rotationAngle(found->imu_R_camera, *told_imu_R_camera_) < worth_telling)) return;
+  told_imu_R_camera_ = found->imu_R_camera;
+  const Eigen::Quaterniond& q = found->imu_R_camera;
+  MappingReport& told = report(last_frame_);
+  told.is_of_setup = true;
+  told.events.push_back(formatted(
+      "the inertial unit is turned by %.2f degrees +- %.2f against what imu_T_camera says: with quaternion: [%.6f, "
+      "%.6f, %.6f, %.6f] there this is known from the start",
+      degrees(rotationAngle(q, settings_.mapping.local_adjustment.inertia->imu_T_camera.rotation)),
+      degrees(found->sigma_rad), q.w(), q.x(), q.y(), q.z()));
+}
+
+void MappingWorker::tellOfUnitLeftOut() {
+  if (!mapper_.map().unit_is_left_out || std::exchange(told_left_out_, true)) return;
+  MappingReport& told = report(last_frame_);
+  told.is_of_setup = true;
+  told.events.push_back(formatted(
+      "the inertial unit seems to be turned by %.1f degrees against what imu_T_camera says: calibrate it; the "
+      "camera goes on alone",
+      degrees(mapper_.unitRotationTooFar())));
 }
 
 // Either will do; wheels know them sooner.

@@ -45,6 +45,8 @@ class MappingWorker {
   void updateRelocalisation();
   void tellOfCamera();
   void tellOfTimeOffset();
+  void tellOfUnitRotation();
+  void tellOfUnitLeftOut();
   void find(const MappingMessage& message);
   bool recover(const MappingMessage& message);
   void relocalise(const MappingMessage& message);
@@ -71,6 +73,8 @@ class MappingWorker {
   std::string lacking_for_metres_;              // that was reported
   FoundCamera told_camera_;                     // what was last said to be another than the calibration's
   std::optional<std::int64_t> told_offset_ns_;  // likewise
+  std::optional<Eigen::Quaterniond> told_imu_R_camera_;
+  bool told_left_out_ = false;
   std::vector<MappingReport> reports_;
 };
 

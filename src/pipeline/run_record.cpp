@@ -133,6 +133,7 @@ void RunRecord::giveMap(const Mapper& mapper) {
   result_.camera = mapper.camera();
   result_.found = map.found;
   result_.time_offset = mapper.foundTimeOffset();
+  result_.unit_rotation = mapper.foundUnitRotation();
   result_.keyframes = keyframeRecords(map, first_keyframe_);
   result_.map_points = mapPointRecords(map, result_.camera);
   result_.map_lines = mapLineRecords(map);

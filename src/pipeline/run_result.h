@@ -13,6 +13,7 @@
 #include "geometry/found_camera.h"
 #include "geometry/pose.h"
 #include "inertia/found_time_offset.h"
+#include "inertia/found_unit_rotation.h"
 #include "inertia/inertial_alignment.h"
 #include "pipeline/duration_statistics.h"
 #include "tracking/frame_result.h"
@@ -83,7 +84,8 @@ struct RunResult {
   Camera camera;                               // with what was found of it
   FoundCamera found;                           // beside its calibration
   std::optional<FoundTimeOffset> time_offset;  // of the inertial unit's clock, where it is not the one that was given
-  std::deque<FrameRecord> frames;              // grows without moving what is there
+  std::optional<FoundUnitRotation> unit_rotation;  // how the unit is turned against the camera, likewise
+  std::deque<FrameRecord> frames;                  // grows without moving what is there
   // Of all worlds: maps that could not be joined, each with a coordinate frame and a unit of its own.
   std::vector<KeyframeRecord> keyframes;
   std::vector<MapPointRecord> map_points;

@@ -135,6 +135,13 @@ ordered_json timeOffsetJson(const std::optional<FoundTimeOffset>& found) {
   return {{"time_offset_s", 1e-9 * static_cast<double>(found->offset_ns)}, {"sigma_s", found->sigma_s}};
 }
 
+// Likewise.
+ordered_json unitRotationJson(const std::optional<FoundUnitRotation>& found) {
+  if (!found) return nullptr;
+  const Eigen::Quaterniond& q = found->imu_R_camera;
+  return {{"quaternion", {q.w(), q.x(), q.y(), q.z()}}, {"sigma_deg", degrees(found->sigma_rad)}};
+}
+
 }  // namespace
 
 RunSummary summarise(const RunResult& result, const std::optional<Trajectory>& ground_truth) {
@@ -231,6 +238,7 @@ ordered_json summaryJson(const RunSummary& summary, const RunResult& result, con
           {"map_lines", summary.worlds.front().map_lines},
           {"initialisation", result.initialisation},
           {"imu_time_offset", timeOffsetJson(result.time_offset)},
+          {"imu_rotation", unitRotationJson(result.unit_rotation)},
           {"recoveries", result.recoveries},
           {"relocalisations", result.relocalisations},
           {"loops", result.closed_loops.size()},

@@ -88,11 +88,24 @@ std::optional<MetricScale::MapScale> MetricScale::mapScale(const FrameResult& re
 // The first time at once, with where up is: what is published changes once.
 void MetricScale::takeFromMap(const FrameResult& result) {
   const std::optional<MapScale> told = mapScale(result);
+  const bool knew = worldOf(result) == world_ && here().map && here().map->kind == ScaleKind::inertia;
+  if (knew && result.inertia && !result.inertia->is_known) mapKnowsNoMore();
   if (!told || worldOf(result) != world_) return;
   WorldScale& world = here();
   world.map = told;
   if (result.inertia && result.inertia->is_known) takeDown(*result.inertia);
   if (world.by_map.scale().kind == ScaleKind::unknown) followMap();
+}
+
+// The map's metres turned out to be wrong: the inertial unit contradicts the camera.
+void MetricScale::mapKnowsNoMore() {
+  WorldScale& world = here();
+  world.map.reset();
+  if (world.scale.kind != ScaleKind::inertia) return;
+  log_.tell("the scale is unknown again: the inertial unit contradicts the camera");
+  begin(world_);
+  publisher_.setScale(here().scale);
+  publisher_.setDown({});
 }
 
 // Up stays, but where it was wrong.

@@ -82,6 +82,7 @@ class MetricScale {
   void enterWorld(const FrameResult& result);
   static std::optional<MapScale> mapScale(const FrameResult& result);
   void takeFromMap(const FrameResult& result);
+  void mapKnowsNoMore();
   void takeDown(const InertialAlignment& inertia);
   void followMap();
   void take(const ScaleState& found);

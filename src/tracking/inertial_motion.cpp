@@ -38,11 +38,11 @@ InertialMotion::InertialMotion(const std::optional<InertialUnit>& unit) {
 }
 
 void InertialMotion::add(const InertialSample& sample) {
-  if (history_ && history_->add(sample)) keep(sample, most_felt, felt_);
+  if (isThere() && history_->add(sample)) keep(sample, most_felt, felt_);
 }
 
 void InertialMotion::observeTurn(const CameraTurn& turn) {
-  if (history_ && turn.rotation.coeffs().allFinite()) keep(turn, most_turns, turns_);
+  if (isThere() && turn.rotation.coeffs().allFinite()) keep(turn, most_turns, turns_);
 }
 
 void InertialMotion::tell(TrackedFrame& keyframe) {
@@ -53,11 +53,18 @@ void InertialMotion::tell(TrackedFrame& keyframe) {
 }
 
 void InertialMotion::setOffset(std::int64_t offset_ns) {
-  if (history_) history_->setOffset(offset_ns);
+  if (isThere()) history_->setOffset(offset_ns);
+}
+
+void InertialMotion::setRotation(const Eigen::Quaterniond& imu_R_camera) {
+  if (!isThere()) return;
+  Pose imu_T_camera = history_->unit().imu_T_camera;
+  imu_T_camera.rotation = imu_R_camera;
+  camera_T_imu_ = imu_T_camera.inverse();
 }
 
 void InertialMotion::observe(const TimedCamera& last, const TimedCamera& camera, double sigma) {
-  if (history_) located_.add(last, {camera, sigma});
+  if (isThere()) located_.add(last, {camera, sigma});
 }
 
 // Of the unit [m].
@@ -101,7 +108,7 @@ std::optional<InertialPrediction> InertialMotion::predict(const TimedCamera& las
                                                           std::int64_t time_ns,
                                                           const std::optional<InertialAlignment>& alignment,
                                                           const InertialPrediction& by_camera) const {
-  if (!history_) return std::nullopt;
+  if (!isThere()) return std::nullopt;
   const InertialAlignment known = alignment.value_or(InertialAlignment{});
   const auto motion = history_->between(last.time_ns, time_ns, known.bias);
   if (!motion) return std::nullopt;
@@ -133,7 +140,7 @@ std::optional<InertialPrediction> InertialMotion::predict(const TimedCamera& las
 
 std::optional<InertialTurn> InertialMotion::turnBetween(std::int64_t from_ns, std::int64_t to_ns,
                                                         const std::optional<InertialAlignment>& alignment) const {
-  if (!history_) return std::nullopt;
+  if (!isThere()) return std::nullopt;
   const InertialAlignment known = alignment.value_or(InertialAlignment{});
   const std::optional<Eigen::Quaterniond> turn = history_->turnBetween(from_ns, to_ns, known.bias);
   if (!turn) return std::nullopt;
@@ -143,7 +150,7 @@ std::optional<InertialTurn> InertialMotion::turnBetween(std::int64_t from_ns, st
 }
 
 InertialLink InertialMotion::linkUpTo(std::int64_t time_ns, const std::optional<InertialAlignment>& alignment) const {
-  if (!history_ || last_keyframe_ < 0) return {};
+  if (!isThere() || last_keyframe_ < 0) return {};
   const auto motion = history_->between(keyframe_ns_, time_ns, alignment ? alignment->bias : InertialBias{});
   return motion ? InertialLink{last_keyframe_, *motion, history_->unit().offset_ns} : InertialLink{};
 }
@@ -161,7 +168,7 @@ void InertialMotion::beginStart(KeyframeId first, std::int64_t time_ns) {
 }
 
 InertialLink InertialMotion::linkSinceStart(std::int64_t time_ns) {
-  if (!history_ || since_start_.from < 0) return {};
+  if (!isThere() || since_start_.from < 0) return {};
   const auto motion = history_->between(start_ns_, time_ns, InertialBias{});
   if (motion) {
     since_start_.motion = joined(since_start_.motion, *motion);

@@ -68,6 +68,11 @@ class InertialMotion {
 
   // The clocks were found to differ by so much.
   void setOffset(std::int64_t offset_ns);
+  // From now on nothing is known by inertia any more.
+  void leaveOut() { is_left_out_ = true; }
+  bool isThere() const { return history_ && !is_left_out_; }
+  // The unit was found to be turned so against the camera.
+  void setRotation(const Eigen::Quaterniond& imu_R_camera);
 
  private:
   struct Located {
@@ -83,6 +88,7 @@ class InertialMotion {
   std::optional<Speed> speedAt(const TimedCamera& last, const InertialAlignment& alignment) const;
 
   std::optional<InertialHistory> history_;
+  bool is_left_out_ = false;
   Pose camera_T_imu_;
   LatestFrames<Located, 16> located_;
   KeyframeId last_keyframe_ = -1;

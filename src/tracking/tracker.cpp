@@ -275,9 +275,9 @@ bool Tracker::goOnFromSpare() {
 
 bool Tracker::isToBeginWorld(std::int64_t time_ns) const {
   if (!options_.worlds_enabled || options_.map_is_frozen || !mapStands() || lost_since_ns_ < 0) return false;
-  const bool is_due = options_.inertia ? !isPredictedStill(time_ns)
-                                       : lost_sharp_since_ns_ >= 0 &&
-                                             secondsSince(lost_sharp_since_ns_, time_ns) > options_.new_world_seconds;
+  const bool is_due = motion_.hasInertia() ? !isPredictedStill(time_ns)
+                                           : lost_sharp_since_ns_ >= 0 && secondsSince(lost_sharp_since_ns_, time_ns) >
+                                                                              options_.new_world_seconds;
   return is_due && !carriedByWheels(time_ns);
 }
 
@@ -611,9 +611,12 @@ void Tracker::keepConfirmation(const MapView& view, bool by_tracks) {
   confirmation_.askForProof();
 }
 
-// Mapping found the camera to be another one than its calibration says, or the clocks to differ.
+// Mapping found the camera to be another one than its calibration says, the clocks to differ, or the unit to be
+// turned otherwise.
 void Tracker::takeFound(const MapView& view) {
   if (view.time_offset) motion_.inertia().setOffset(view.time_offset->offset_ns);
+  if (view.unit_is_left_out) motion_.inertia().leaveOut();
+  if (view.unit_rotation) motion_.inertia().setRotation(view.unit_rotation->imu_R_camera);
   const Camera camera = withFound(calibrated_, view.found);
   if (camera == camera_) return;
   camera_ = camera;

@@ -47,6 +47,7 @@ class UnseenMotion {
   OdometryPlace wheelsAt(std::int64_t time_ns) const { return wheels_.at(time_ns); }
   // For the links between keyframes.
   InertialMotion& inertia() { return inertia_; }
+  bool hasInertia() const { return inertia_.isThere(); }
 
   // Every frame that has a pose, after `last`; `sigma`: standard deviation of its place [map units].
   void observe(const FollowedFrame& last, const FollowedFrame& now, double sigma, const MapView& view);

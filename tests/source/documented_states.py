@@ -27,7 +27,10 @@ SOURCES = {
         "the distortion is not that of the calibration, but k1: %.4f, k2: %.4f: calibrate the camera",
         "the inertial unit tells metres and upright: a map unit is %.3f m +- %.1f %%",
         "the inertial unit's clock differs from the camera's by %.1f ms +- %.1f: with time_offset_s: %.4f beside "
-        "imu_T_camera this is known from the start"],
+        "imu_T_camera this is known from the start",
+        "the inertial unit is turned by %.2f degrees +- %.2f against what imu_T_camera says: with quaternion: [%.6f, "
+        "%.6f, %.6f, %.6f] there this is known from the start",
+        "the inertial unit seems to be turned by %.1f degrees against what imu_T_camera says: calibrate it; the camera goes on alone"],
     "src/mapping/initialisation.cpp": [" from frame ", " to frame ", ", "],  # what the start was
     "src/mapping/initialisation.h": [],
     "src/mapping/initial_judgement.cpp": ["quality ", " edge pieces, parallax ", " deg, ", " points"],  # likewise
@@ -44,7 +47,7 @@ SOURCES = {
     "src/scale/scale_search.cpp": ["odometry", "camera_height"],  # values of scale.source
     "src/service/metric_scale.cpp": [  # lines of the log
         "the scale is %.6g metres a map unit, standard deviation %.2g %%",
-        "the scale is unknown again: another map was begun", "the scale is unknown in this map",
+        "the scale is unknown again: another map was begun", "the scale is unknown again: the inertial unit contradicts the camera", "the scale is unknown in this map",
         ", in a map that the camera is not in now", "the scale is not known yet: ",
         "the scale is not renewed: "],
     "src/frames/image_file.cpp": [],

@@ -67,6 +67,28 @@ TEST_F(MetricScaleTest, InertiaTellsItAtOnceAndItMovesSlowlyFromThenOn) {
   EXPECT_GT(publisher_.robot().down->x(), 0.05) << "but where it was wrong";
 }
 
+// A unit that contradicts the camera: the map no longer knows it. A lost frame says nothing of that.
+TEST_F(MetricScaleTest, WhatInertiaNoLongerKnowsIsUnknownAgain) {
+  MetricScale scale(options_, Pose(), publisher_, work_, log_);
+  scale.frame(measuredFrame(0, Pose()));
+  scale.frame(frameWithInertia(1, 2, Eigen::Vector3d::UnitY()));
+  scale.frame(frameWithoutPose(2, TrackingState::lost, "dark"));
+  EXPECT_EQ(publisher_.scale().kind, ScaleKind::inertia);
+  FrameResult unknown = frameWithInertia(3, 2, Eigen::Vector3d::UnitY());
+  unknown.inertia->is_known = false;
+  scale.frame(unknown);
+  EXPECT_FALSE(scale.isKnown());
+  EXPECT_EQ(publisher_.scale().kind, ScaleKind::unknown);
+  EXPECT_FALSE(publisher_.robot().down);
+  FrameResult still_unknown = frameWithInertia(4, 2, Eigen::Vector3d::UnitY());
+  still_unknown.inertia->is_known = false;
+  scale.frame(still_unknown);
+  const std::string told = said();
+  const std::size_t first = told.find("the scale is unknown again: the inertial unit contradicts the camera\n");
+  ASSERT_NE(first, std::string::npos) << told;
+  EXPECT_EQ(told.find("contradicts", told.find('\n', first)), std::string::npos) << "told once: " << told;
+}
+
 FrameResult frameWithWheels(int index, double metres_a_unit) {
   FrameResult frame = measuredFrame(index, Pose());
   frame.wheels = {true, metres_a_unit, 0.02};

@@ -64,5 +64,30 @@ TEST(InertialMotion, GoesByTheOffsetThatWasFound) {
   EXPECT_EQ(motion.linkUpTo(1100 * millisecond, {}).offset_ns, 50 * millisecond);
 }
 
+TEST(InertialMotion, ThatIsLeftOutKnowsNothing) {
+  InertialMotion motion(InertialUnit{});
+  for (int i = 0; i <= 300; ++i) motion.add({i * 5 * millisecond, {1, 0, 0}, Eigen::Vector3d::Zero()});
+  motion.linkFrom(3, 500 * millisecond);
+  ASSERT_TRUE(motion.isThere());
+  ASSERT_TRUE(motion.turnBetween(500 * millisecond, 600 * millisecond, {}));
+  ASSERT_EQ(motion.linkUpTo(600 * millisecond, {}).from, 3);
+  motion.leaveOut();
+  EXPECT_FALSE(motion.isThere());
+  EXPECT_FALSE(motion.turnBetween(500 * millisecond, 600 * millisecond, {}));
+  EXPECT_LT(motion.linkUpTo(600 * millisecond, {}).from, 0);
+}
+
+TEST(InertialMotion, GoesByTheRotationThatWasFound) {
+  InertialMotion motion(InertialUnit{});
+  for (int i = 0; i <= 300; ++i) motion.add({i * 5 * millisecond, {1, 0, 0}, Eigen::Vector3d::Zero()});
+  const auto turned = [&]() {
+    return rotationLog(motion.turnBetween(500 * millisecond, 600 * millisecond, {})->first_R_second);
+  };
+  EXPECT_LT((turned() - Eigen::Vector3d(0.1, 0, 0)).norm(), 1e-9);
+  const Eigen::Quaterniond found = rotationExp({0, 0, 0.05});
+  motion.setRotation(found);
+  EXPECT_LT((turned() - found.conjugate() * Eigen::Vector3d(0.1, 0, 0)).norm(), 1e-9);
+}
+
 }  // namespace
 }  // namespace edgeslam
