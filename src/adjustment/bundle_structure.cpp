@@ -191,17 +191,15 @@ void forEachPair(const Landmark& landmark, const std::vector<int>& viewers, cons
 
 // All blocks of the lower triangle, or those that some point, line or inertia asks for.
 void placeBlocks(int most_dense, BundleStructure& structure) {
-  const auto unknowns = static_cast<std::int64_t>(structure.camera_of_unknown.size());
-  structure.dense = unknowns <= most_dense;
-  std::vector<std::int64_t>& pairs = structure.pairs;
-  pairs.clear();
-  const auto key = [&](int row, int column) { return column * unknowns + row; };
-  if (structure.dense) {
-    for (int column = 0; column < unknowns; ++column) {
-      for (int row = column; row < unknowns; ++row) pairs.push_back(key(row, column));
-    }
-  } else {
-    const auto ask = [&](int row, int column) { pairs.push_back(key(row, column)); };
+  const std::size_t unknowns = structure.camera_of_unknown.size();
+  structure.dense = unknowns <= at(most_dense);
+  // Not a list of what is asked for, which is long: most pairs of cameras see many points together.
+  constexpr int nobody_asks = -1, asked = 0;
+  std::vector<int>& block_of_pair = structure.block_of_pair;
+  block_of_pair.assign(unknowns * unknowns, structure.dense ? asked : nobody_asks);
+  const auto blockOf = [&](int row, int column) -> int& { return block_of_pair[at(column) * unknowns + at(row)]; };
+  if (!structure.dense) {
+    const auto ask = [&](int row, int column) { blockOf(row, column) = asked; };
     for (const StructuredPoint& point : structure.points) forEachPair(point, structure.viewers, ask);
     for (const StructuredLine& line : structure.lines) forEachPair(line, structure.line_viewers, ask);
     for (const auto* inertia : {&structure.turns, &structure.speed_changes, &structure.ways}) {
@@ -209,32 +207,27 @@ void placeBlocks(int most_dense, BundleStructure& structure) {
         forEachPair(term, [&](int, int row, int column) { ask(row, column); });
       }
     }
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   }
   structure.places.clear();
-  for (const std::int64_t pair : pairs) {
-    structure.places.push_back({static_cast<int>(pair % unknowns), static_cast<int>(pair / unknowns)});
+  for (int column = 0; at(column) < unknowns; ++column) {
+    for (int row = column; at(row) < unknowns; ++row) {
+      if (blockOf(row, column) == nobody_asks) continue;
+      blockOf(row, column) = static_cast<int>(structure.places.size());
+      structure.places.push_back({row, column});
+    }
   }
-  const auto blockAt = [&](int row, int column) {
-    const std::int64_t before = column * unknowns - std::int64_t{column} * (column - 1) / 2;
-    const std::int64_t block = structure.dense
-                                   ? before + row - column
-                                   : std::lower_bound(pairs.begin(), pairs.end(), key(row, column)) - pairs.begin();
-    return static_cast<int>(block);
-  };
   const auto place = [&](auto& landmarks, const std::vector<int>& viewers, std::vector<int>& blocks) {
     blocks.clear();
     for (auto& landmark : landmarks) {
       landmark.first_block = static_cast<int>(blocks.size());
-      forEachPair(landmark, viewers, [&](int row, int column) { blocks.push_back(blockAt(row, column)); });
+      forEachPair(landmark, viewers, [&](int row, int column) { blocks.push_back(blockOf(row, column)); });
     }
   };
   place(structure.points, structure.viewers, structure.blocks);
   place(structure.lines, structure.line_viewers, structure.line_blocks);
   for (auto* inertia : {&structure.turns, &structure.speed_changes, &structure.ways}) {
     for (StructuredInertia& term : *inertia) {
-      forEachPair(term, [&](int pair, int row, int column) { term.blocks[at(pair)] = blockAt(row, column); });
+      forEachPair(term, [&](int pair, int row, int column) { term.blocks[at(pair)] = blockOf(row, column); });
     }
   }
 }

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "adjustment/bundle_adjustment.h"
@@ -87,7 +86,7 @@ struct BundleStructure {
   // Kept between calls for their memory.
   ObservationOrder of_points, of_lines;
   std::vector<int> unknown_of_camera;
-  std::vector<std::int64_t> pairs;
+  std::vector<int> block_of_pair;  // of unknowns, column by column; -1: there is none
 };
 
 // Where in `blocks` a point's, or a line's, pair of viewers stands, counted from its first; `row` >= `column`.

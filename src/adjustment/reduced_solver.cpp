@@ -55,17 +55,6 @@ bool ReducedSolver::solve(const BundleStructure& structure, const BundleState& s
     step.changes.segment<3>(static_cast<Eigen::Index>(6 * k + 3)) =
         levers_[k].cross(Eigen::Vector3d(gradient.head<3>())) - gradient.tail<3>();
   }
-  blocks_ = linearization.blocks;
-  for (std::size_t b = 0; b < structure.places.size(); ++b) {
-    const BlockPlace place = structure.places[b];
-    toStepsOfColumn(levers_[at(place.column)], blocks_[b]);
-    toStepsOfRow(levers_[at(place.row)], blocks_[b]);
-    if (place.row != place.column) continue;
-    Matrix6d own = linearization.diagonal[at(place.row)];
-    toStepsOfColumn(levers_[at(place.row)], own);
-    toStepsOfRow(levers_[at(place.row)], own);
-    blocks_[b].diagonal() += damping * own.diagonal().cwiseMax(least_information);
-  }
   border_.resize(0, 9);
   if (state.inertia.is_free) {
     border_ = linearization.inertia_border;
@@ -75,8 +64,12 @@ bool ReducedSolver::solve(const BundleStructure& structure, const BundleState& s
     }
   }
   const Eigen::Matrix<double, Eigen::Dynamic, 9> border = border_;
-  if (!(structure.dense ? solveDense(structure, step.changes) : (fillSparse(structure), solveSparse(step.changes))))
-    return false;
+  if (structure.dense) {
+    if (!solveDense(structure, linearization, damping, step.changes)) return false;
+  } else {
+    fillSparse(structure, linearization, damping);
+    if (!solveSparse(step.changes)) return false;
+  }
   step.inertia.setZero();
   if (state.inertia.is_free && !solveInertia(linearization, border, damping, step)) return false;
   step.twists = step.changes;
@@ -101,9 +94,26 @@ bool ReducedSolver::solveInertia(const BundleLinearization& linearization,
   return step.inertia.allFinite();
 }
 
-bool ReducedSolver::solveDense(const BundleStructure& structure, Eigen::VectorXd& solution) {
+// A block of the system for centre and turn.
+Matrix6d ReducedSolver::damped(const BlockPlace& place, const Matrix6d& block, const BundleLinearization& linearization,
+                               double damping) const {
+  Matrix6d changed = block;
+  toStepsOfColumn(levers_[at(place.column)], changed);
+  toStepsOfRow(levers_[at(place.row)], changed);
+  if (place.row != place.column) return changed;
+  Matrix6d own = linearization.diagonal[at(place.row)];
+  toStepsOfColumn(levers_[at(place.row)], own);
+  toStepsOfRow(levers_[at(place.row)], own);
+  changed.diagonal() += damping * own.diagonal().cwiseMax(least_information);
+  return changed;
+}
+
+bool ReducedSolver::solveDense(const BundleStructure& structure, const BundleLinearization& linearization,
+                               double damping, Eigen::VectorXd& solution) {
   for (std::size_t b = 0; b < structure.places.size(); ++b) {
-    dense_.block<6, 6>(6 * structure.places[b].row, 6 * structure.places[b].column) = blocks_[b];
+    const BlockPlace place = structure.places[b];
+    dense_.block<6, 6>(6 * place.row, 6 * place.column) =
+        damped(place, linearization.blocks[b], linearization, damping);
   }
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(dense_);
   if (factor.info() != Eigen::Success) return false;
@@ -121,15 +131,20 @@ bool ReducedSolver::solveSparse(Eigen::VectorXd& solution) {
 }
 
 // Blocks stand by column, then row, beginning with the diagonal's: the order of the values.
-void ReducedSolver::fillSparse(const BundleStructure& structure) {
+void ReducedSolver::fillSparse(const BundleStructure& structure, const BundleLinearization& linearization,
+                               double damping) {
   double* value = sparse_.valuePtr();
   std::size_t first = 0;
   while (first < structure.places.size()) {
+    const int column = structure.places[first].column;
     std::size_t end = first;
-    while (end < structure.places.size() && structure.places[end].column == structure.places[first].column) ++end;
+    column_.clear();
+    for (; end < structure.places.size() && structure.places[end].column == column; ++end) {
+      column_.push_back(damped(structure.places[end], linearization.blocks[end], linearization, damping));
+    }
     for (int j = 0; j < 6; ++j) {
-      for (std::size_t b = first; b < end; ++b) {
-        for (int i = b == first ? j : 0; i < 6; ++i) *value++ = blocks_[b](i, j);
+      for (std::size_t b = 0; b < column_.size(); ++b) {
+        for (int i = b == 0 ? j : 0; i < 6; ++i) *value++ = column_[b](i, j);
       }
     }
     first = end;

@@ -35,12 +35,15 @@ class ReducedSolver {
   // Where inertia is free: its unknowns are eliminated last, by what they share with the cameras.
   bool solveInertia(const BundleLinearization& linearization, const Eigen::Matrix<double, Eigen::Dynamic, 9>& border,
                     double damping, CameraStep& step);
-  bool solveDense(const BundleStructure& structure, Eigen::VectorXd& solution);
+  bool solveDense(const BundleStructure& structure, const BundleLinearization& linearization, double damping,
+                  Eigen::VectorXd& solution);
   bool solveSparse(Eigen::VectorXd& solution);
-  void fillSparse(const BundleStructure& structure);
+  void fillSparse(const BundleStructure& structure, const BundleLinearization& linearization, double damping);
+  Matrix6d damped(const BlockPlace& place, const Matrix6d& block, const BundleLinearization& linearization,
+                  double damping) const;
 
   std::vector<Eigen::Vector3d> levers_;  // of each unknown's camera: from the twists' origin to its centre
-  std::vector<Matrix6d> blocks_;         // damped, for centre and turn
+  std::vector<Matrix6d> column_;         // damped, for centre and turn: the blocks of one unknown
   Eigen::MatrixXd dense_;
   Eigen::Matrix<double, Eigen::Dynamic, 9> border_;  // inertia's with the steps, and then solved for
   InertiaMatrix inertia_covariance_ = InertiaMatrix::Zero();
