@@ -99,22 +99,23 @@ void LockstepRun::hand(MappingMessage& message) {
   remember(mapping_.handle(message));
   if (mapping_.hasNewKeyframe()) {
     ++keyframes_;
-    Snapshot snapshot = *mapping_.snapshot();
-    if (isWanted(snapshot)) {
-      snapshots_.push_back({keyframes_ + settings_.correction_delay_keyframes, std::move(snapshot)});
+    // At once, though it is applied later: what waits is a correction and not a copy of the map.
+    if (placesSaw(mapping_.lastMessage())) {
+      corrections_.push_back({keyframes_ + settings_.correction_delay_keyframes, places_.work(*mapping_.mapInPlace())});
     }
   }
   if (recorded_) applyRecordedCorrections(message.number + 1);
 }
 
-bool LockstepRun::isWanted(const Snapshot& snapshot) const {
-  return !recorded_ || recorded_->snapshots.count(snapshot.number) > 0;
+// The map as it was after this message.
+bool LockstepRun::placesSaw(std::int64_t message) const {
+  return !recorded_ || recorded_->snapshots.count(message) > 0;
 }
 
 // Those due before keyframe number `keyframes`.
 void LockstepRun::applyDueCorrections(std::int64_t keyframes) {
-  for (; !snapshots_.empty() && snapshots_.front().due <= keyframes; snapshots_.pop_front()) {
-    remember(mapping_.apply(places_.work(snapshots_.front().snapshot)));
+  for (; !corrections_.empty() && corrections_.front().due <= keyframes; corrections_.pop_front()) {
+    remember(mapping_.apply(corrections_.front().correction));
   }
 }
 
@@ -123,9 +124,9 @@ void LockstepRun::applyRecordedCorrections(std::int64_t message) {
   const auto applied = recorded_->corrections.find(message);
   if (applied == recorded_->corrections.end()) return;
   for (const std::int64_t number : applied->second) {
-    if (snapshots_.empty() || snapshots_.front().snapshot.number != number) return;  // the recording is of another run
-    remember(mapping_.apply(places_.work(snapshots_.front().snapshot)));
-    snapshots_.pop_front();
+    if (corrections_.empty() || corrections_.front().correction.number != number) return;  // it is of another run
+    remember(mapping_.apply(corrections_.front().correction));
+    corrections_.pop_front();
   }
 }
 

@@ -47,16 +47,16 @@ class LockstepRun {
     std::int64_t due = 0;  // count of frames processed at which it is taken
     MapUpdate update;
   };
-  struct DueSnapshot {
-    std::int64_t due = 0;  // count of keyframes before which its correction is applied
-    Snapshot snapshot;
+  struct DueCorrection {
+    std::int64_t due = 0;  // count of keyframes before which it is applied
+    Correction correction;
   };
 
   void takeDueUpdate(std::int64_t frame_index);
   void takeRecorded(std::int64_t frame_index);
   bool isDue(const DueUpdate& update, std::int64_t frame_index) const;
   void hand(MappingMessage& message);
-  bool isWanted(const Snapshot& snapshot) const;
+  bool placesSaw(std::int64_t message) const;
   void applyDueCorrections(std::int64_t keyframes);
   void applyRecordedCorrections(std::int64_t message);
   void remember(std::optional<MapUpdate> update);
@@ -71,7 +71,7 @@ class LockstepRun {
   const FrameResult* latest_ = nullptr;
   FrameMessages messages_;  // of the current frame
   std::deque<DueUpdate> updates_;
-  std::deque<DueSnapshot> snapshots_;
+  std::deque<DueCorrection> corrections_;
   std::int64_t processed_ = 0;  // frames
   std::int64_t keyframes_ = 0;  // handed to places
   std::int64_t drawing_interval_ = 100;

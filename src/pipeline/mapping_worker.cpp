@@ -247,6 +247,12 @@ std::optional<Snapshot> MappingWorker::snapshot() const {
   return Snapshot{last_message_, last_frame_, std::make_shared<const Map>(mapper_.map())};
 }
 
+std::optional<Snapshot> MappingWorker::mapInPlace() const {
+  if (!new_keyframe_) return std::nullopt;
+  const std::shared_ptr<const Map> not_owned(std::shared_ptr<const Map>(), &mapper_.map());
+  return Snapshot{last_message_, last_frame_, not_owned};
+}
+
 MapUpdate MappingWorker::nextUpdate(KeyframeId centre) {
   MapUpdate update;
   update.number = next_update_++;

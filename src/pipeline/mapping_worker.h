@@ -31,6 +31,8 @@ class MappingWorker {
   // The last message brought a keyframe: the map for places.
   bool hasNewKeyframe() const { return new_keyframe_; }
   std::optional<Snapshot> snapshot() const;
+  // The same without a copy: it is good until the map changes.
+  std::optional<Snapshot> mapInPlace() const;
   // Number of the last message, -1 before the first.
   std::int64_t lastMessage() const { return last_message_; }
   // What was done since this was last asked.

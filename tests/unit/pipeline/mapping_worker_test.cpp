@@ -116,6 +116,7 @@ TEST(MappingWorker, ASnapshotIsOfTheMapAfterAKeyframeAndOfNothingElse) {
   const std::int64_t on_its_way = next++;
   EXPECT_FALSE(worker.handle(seenIn(wall, on_its_way, sideways(static_cast<int>(on_its_way) - 1), -1)));
   EXPECT_FALSE(worker.snapshot()) << "no keyframe";
+  EXPECT_FALSE(worker.mapInPlace()) << "no keyframe";
 
   const Pose pose = worker.mapper().map().keyframes.back().world_T_camera;
   MappingMessage keyframe = seenIn(wall, next++, Pose(), 30);
@@ -126,6 +127,12 @@ TEST(MappingWorker, ASnapshotIsOfTheMapAfterAKeyframeAndOfNothingElse) {
   EXPECT_EQ(second->number, keyframe.number);
   EXPECT_EQ(second->map->keyframes.back().id, 30);
   EXPECT_EQ(first->map->keyframes.size(), keyframes) << "a value, that stays as it was";
+
+  const std::optional<Snapshot> in_place = worker.mapInPlace();
+  ASSERT_TRUE(in_place);
+  EXPECT_EQ(in_place->number, second->number);
+  EXPECT_EQ(in_place->frame_index, second->frame_index);
+  EXPECT_EQ(in_place->map.get(), &worker.mapper().map());
 }
 
 TEST(MappingWorker, ALostFrameIsRecoveredAsAKeyframe) {
