@@ -206,6 +206,7 @@ void MappingWorker::relocalise(const MappingMessage& message) {
                                                                  message.frame.noise_factor, message.latest_believed);
   not_found_ = result.reason;
   if (!result.found) return;
+  for (const Keyframe& keyframe : map.keyframes) keyframe.images.pack();  // the search is over
   mapper_.goBackTo(result.keyframe);
   std::vector<FoundAgain> points;
   for (const MatchedPoint& match : result.matches) points.push_back({match.point, match.measurement, match.corner});

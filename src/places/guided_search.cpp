@@ -44,6 +44,18 @@ VisiblePoints thinOut(const SearchPoints& points, const VisiblePoints& visible, 
   return chosen;
 }
 
+// To the visible points alone: of all those around a place the keyframes are many, and their images would be unpacked.
+// The points are good for as long as what is returned is held.
+std::vector<std::shared_ptr<const FrameImages>> giveImages(const Map& map, const std::vector<KeyframeId>& sources,
+                                                           const VisiblePoints& visible, SearchPoints& points) {
+  std::vector<std::shared_ptr<const FrameImages>> held;
+  for (const VisiblePoint& candidate : visible) {
+    held.push_back(map.keyframes[sources[candidate.index]].images.get());
+    points[candidate.index].source_images = held.back().get();
+  }
+  return held;
+}
+
 Track accuracyAt(const SearchedFrame& frame, const FoundPoint& found) {
   Track track;
   track.pixel = found.pixel;
@@ -58,9 +70,10 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
   MapSearchOptions search = options.search;
   search.radius = round.radius;
   search.coarsest_level = round.coarsest_level;
-  std::vector<PatchSource> sources;
-  const SearchPoints points = searchPoints(map, ids, start, sources);
+  std::vector<KeyframeId> sources;
+  SearchPoints points = searchPoints(map, ids, start, sources);
   const VisiblePoints visible = thinOut(points, visiblePoints(camera, points, start, search), round.most_points);
+  const std::vector<std::shared_ptr<const FrameImages>> held = giveImages(map, sources, visible, points);
 
   RoundResult result;
   result.visible = static_cast<int>(visible.size());
@@ -77,7 +90,7 @@ RoundResult searchOnce(const Camera& camera, const Map& map, const std::vector<P
       measurement.sigma_normal = sigmaAcross(/*corner=*/false, frame.accuracy);
       measurement.sigma_tangent = std::max<double>(seen.sigma_tangent, point.sigma_tangent);
     }
-    result.matches.push_back({point.id, measurement, point.corner, sources[found.index].keyframe});
+    result.matches.push_back({point.id, measurement, point.corner, sources[found.index]});
     result.distances.push_back((point.position - start.translation).norm());
     measurement.sigma_normal *= round.widening;
     measurement.sigma_tangent *= round.widening;
@@ -145,7 +158,7 @@ std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neigh
 }
 
 SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
-                          std::vector<PatchSource>& sources) {
+                          std::vector<KeyframeId>& sources) {
   SearchPoints result;
   sources.clear();
   for (const PointId id : points) {
@@ -168,10 +181,10 @@ SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, co
     const PointObservation* seen = nearest ? findObservation(*nearest, id) : nullptr;
     if (!seen) continue;
     const Measurement& m = seen->measurement;
-    sources.push_back({nearest->id, nearest->images.get()});
-    result.push_back({id, position, sources.back().images.get(), nearest->world_T_camera, m.pixel.cast<float>(),
-                      m.normal.cast<float>(), seen->corner, static_cast<float>(m.sigma_normal),
-                      static_cast<float>(m.sigma_tangent), nearest->twist});
+    sources.push_back(nearest->id);
+    result.push_back({id, position, nullptr, nearest->world_T_camera, m.pixel.cast<float>(), m.normal.cast<float>(),
+                      seen->corner, static_cast<float>(m.sigma_normal), static_cast<float>(m.sigma_tangent),
+                      nearest->twist});
   }
   return result;
 }
@@ -238,7 +251,7 @@ GuidedSearchResult guidedSearch(const Camera& camera, const Map& map, const std:
   evidence.cells = cellsCovered(camera, result.inliers);
   evidence.median_distance = upperMedian(distances);
   evidence.position_sigma = largestSigma(last.pose.covariance.topLeftCorner<3, 3>()) / evidence.median_distance;
-  std::vector<PatchSource> sources;
+  std::vector<KeyframeId> sources;
   const Pose& pose = last.pose.world_T_camera;
   const SearchPoints around = searchPoints(map, points, pose, sources);
   evidence.explained =

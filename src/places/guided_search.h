@@ -76,16 +76,10 @@ struct GuidedSearchResult {
 // The map points that a keyframe and its best covisible ones see, ascending.
 std::vector<PointId> pointsAround(const Map& map, KeyframeId keyframe, int neighbours);
 
-// Where a point's patch is from.
-struct PatchSource {
-  KeyframeId keyframe = -1;
-  std::shared_ptr<const FrameImages> images;
-};
-
-// The points with, of each, the keyframe that saw it most nearly from where `world_T_camera` does. `sources` gets
-// these, one a point; the points are good for as long as it is.
+// The points with, of each, how the keyframe saw it that did so most nearly from where `world_T_camera` does, without
+// its images. `sources` gets these keyframes, one a point.
 SearchPoints searchPoints(const Map& map, const std::vector<PointId>& points, const Pose& world_T_camera,
-                          std::vector<PatchSource>& sources);
+                          std::vector<KeyframeId>& sources);
 
 // A frame in which map points are searched for.
 struct SearchedFrame {

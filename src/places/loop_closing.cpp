@@ -85,6 +85,7 @@ LoopOutcome LoopClosing::addKeyframe(const Map& map) {
     outcome.considered.push_back(judge(map, outcome.current, candidate));
     acceptAgreeingJoin(map, outcome.current, outcome.considered.back());
     refuseWhereKnownOtherwise(map, outcome.current, outcome.considered.back());
+    for (const Keyframe& keyframe : map.keyframes) keyframe.images.pack();  // the next one is of other keyframes
   }
   refuseContradictions(map, outcome.current, outcome.considered);
   const auto best = std::max_element(outcome.considered.begin(), outcome.considered.end(), fewerInliers);

@@ -50,7 +50,8 @@ std::optional<PointsConfirmed> reuseMapPoints(const Camera& camera, const MapVie
   for (const ViewPoint& point : view.points) {
     while (t < tracks.size() && tracks[t].id < point.id) ++t;
     const bool followed = t < tracks.size() && tracks[t].id == point.id;
-    if (!followed && point.source >= 0) points.push_back(searchPointOf(view, point));
+    if (!followed && point.source >= 0 && view.keyframes[point.source].images)
+      points.push_back(searchPointOf(view, point));
   }
   const VisiblePoints visible = visiblePoints(camera, points, moving, options.search, memory);
   const auto confirms = [&](PointId id) {

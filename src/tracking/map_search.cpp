@@ -96,7 +96,6 @@ VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, co
   visible.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SearchPoint& point = points[i];
-    if (!point.source_images) continue;
     const Eigen::Vector3d from_source = point.position - point.world_T_source.translation;
     const Eigen::Vector3d from_camera = point.position - world_T_camera.translation;
     if (!(from_source.dot(from_camera) > least_cosine * from_source.norm() * from_camera.norm())) continue;
@@ -122,8 +121,9 @@ FoundPoints findVisiblePoints(const SearchPoints& points, const VisiblePoints& v
   FoundPoints found(memory);
   found.reserve(visible.size());
   for (const VisiblePoint& candidate : visible) {
-    if (const auto match = findPatch(points[candidate.index], candidate, current, edges, options))
-      found.push_back(*match);
+    const SearchPoint& point = points[candidate.index];
+    if (!point.source_images) continue;
+    if (const auto match = findPatch(point, candidate, current, edges, options)) found.push_back(*match);
   }
   return found;
 }

@@ -17,7 +17,7 @@ namespace edgeslam {
 struct SearchPoint {
   PointId id = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world
-  const FrameImages* source_images = nullptr;          // of the keyframe; null: the point is passed over
+  const FrameImages* source_images = nullptr;          // of the keyframe; needed where the point is searched for
   Pose world_T_source;
   Eigen::Vector2f source_pixel = Eigen::Vector2f::Zero();
   Eigen::Vector2f source_normal = Eigen::Vector2f::UnitX();  // unit, from dark to bright
@@ -69,7 +69,8 @@ VisiblePoints visiblePoints(const Camera& camera, const SearchPoints& points, co
                             std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 // Those of the visible points whose patch is found, on an edge of `edges`, in the order of `visible`. The pose that
-// these are visible from may be wrong by what moves a point by the search radius in the image.
+// these are visible from may be wrong by what moves a point by the search radius in the image. What has no images is
+// not found.
 FoundPoints findVisiblePoints(const SearchPoints& points, const VisiblePoints& visible, const FrameImages& current,
                               const EdgeMap& edges, const MapSearchOptions& options,
                               std::pmr::memory_resource* memory = std::pmr::get_default_resource());

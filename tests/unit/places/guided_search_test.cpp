@@ -234,18 +234,37 @@ TEST(GuidedSearch, AnotherRoomGivesNoPoseThatIsAccepted) {
   EXPECT_FALSE(found.reason.empty());
 }
 
+TEST(GuidedSearch, UnpacksTheImagesAloneByWhichItSearches) {
+  const Camera camera = placeCamera();
+  const Eigen::Quaterniond about(0, 0, 1, 0);  // where the last two look the frame does not
+  const Map map = makePlace(
+      7, camera,
+      {Pose(), Pose{Eigen::Quaterniond::Identity(), {0.1, 0, 0}}, Pose{about, {0, 0, 0}}, Pose{about, {0.1, 0, 0}}});
+  for (const Keyframe& keyframe : map.keyframes) keyframe.images.pack();
+  const Pose truth{Eigen::Quaterniond::Identity(), {0.02, 0, 0}};
+  FrameImages images;
+  const cv::Mat grey = renderRoom(7, camera, truth);
+  images.pyramid = buildPyramid(grey, 4);
+  const EdgeMap edges = detectEdges(grey, {});
+  std::vector<PointId> points;
+  for (const auto& [id, point] : map.points) points.push_back(id);
+  guidedSearch(camera, map, points, {images, edges, {}}, truth, {});
+  EXPECT_TRUE(map.keyframes[0].images.pack()) << "they were looked at";
+  for (const KeyframeId away : {2, 3}) EXPECT_FALSE(map.keyframes[away].images.pack()) << "they are packed still";
+}
+
 // Of the keyframes that saw a point, the one that saw it most nearly from here.
 TEST(GuidedSearch, SearchesByThePatchOfTheNearestKeyframe) {
   for (const KeyframeId near : {0, 1, 2}) {
-    std::vector<PatchSource> sources;
+    std::vector<KeyframeId> sources;
     const Pose& pose = seenRoom().map.keyframes[near].world_T_camera;
     const SearchPoints points = searchPoints(seenRoom().map, seenRoom().points, pose, sources);
     ASSERT_EQ(points.size(), sources.size());
     ASSERT_GT(points.size(), 100U);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const bool seen_there = findObservation(seenRoom().map.keyframes[near], points[i].id) != nullptr;
-      EXPECT_EQ(sources[i].keyframe == near, seen_there) << points[i].id;
-      const PointObservation* seen = findObservation(seenRoom().map.keyframes[sources[i].keyframe], points[i].id);
+      EXPECT_EQ(sources[i] == near, seen_there) << points[i].id;
+      const PointObservation* seen = findObservation(seenRoom().map.keyframes[sources[i]], points[i].id);
       ASSERT_NE(seen, nullptr);
       EXPECT_EQ(points[i].source_pixel, Eigen::Vector2f(seen->measurement.pixel.cast<float>()));
     }

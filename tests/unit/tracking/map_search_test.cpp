@@ -94,9 +94,6 @@ TEST(MapSearch, BehindBesideAndFromTheOtherSideNothingIsVisible) {
   EXPECT_EQ(visibleFrom({rotationExp({0, M_PI, 0}), Eigen::Vector3d::Zero()}), 0U);
   EXPECT_EQ(visibleFrom({rotationExp({0, M_PI, 0}), {0, 0, 8}}), 0U) << "through the wall, from behind";
   EXPECT_EQ(visibleFrom({Eigen::Quaterniond::Identity(), {0, 0, -12}}), 0U) << "four times as far";
-  SearchPoints without_images = room().points;
-  for (SearchPoint& point : without_images) point.source_images = nullptr;
-  EXPECT_TRUE(visiblePoints(placeCamera(), without_images, Pose(), {}).empty());
 }
 
 TEST(MapSearch, NormalsTurnWithTheImage) {
