@@ -98,6 +98,7 @@ void LockstepRun::hand(MappingMessage& message) {
   if (!recorded_ && message.frame.kind != FrameKind::lost) applyDueCorrections(keyframes_ + 1);
   remember(mapping_.handle(message));
   if (mapping_.hasNewKeyframe()) {
+    tracking_.dropUnusedImages();
     ++keyframes_;
     // At once, though it is applied later: what waits is a correction and not a copy of the map.
     if (placesSaw(mapping_.lastMessage())) {

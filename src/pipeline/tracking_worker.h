@@ -41,13 +41,19 @@ class TrackingWorker {
   const std::shared_ptr<const FrameImages>& images() const { return tracker_.latestImages(); }
 
   // For another thread, after each keyframe: images for the frames to come.
-  void prepareImages() { tracker_.prepareImages(images_ready); }
+  void prepareImages() {
+    tracker_.prepareImages(images_ready);
+    tracker_.dropUnusedImages(2 * images_ready);
+  }
+  // The same where tracking may wait for memory.
+  void dropUnusedImages() { tracker_.dropUnusedImages(fewest_images); }
 
   // For drawings.
   const Tracker& tracker() const { return tracker_; }
 
  private:
   static constexpr int images_ready = 12;
+  static constexpr int fewest_images = 2;
 
   MappingMessage& nextMessage(FrameMessages& messages);
   bool isToAskWhere(std::int64_t time_ns) const;

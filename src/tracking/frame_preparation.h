@@ -39,6 +39,8 @@ class FramePreparation {
 
   // Makes images ready for frames to come, in place of those that keyframes keep; for another thread.
   void keepReady(int count) { image_pool_.keepReady(count); }
+  // Gives up images that keyframes gave back, but for so many; likewise.
+  void dropUnused(int most) { image_pool_.dropUnused(most); }
 
  private:
   PreparationOptions options_;

@@ -31,6 +31,15 @@ class RecyclingPool {
     while (store_->ready.load(std::memory_order_relaxed) < count) store_->giveBack(makeSlot().release());
   }
 
+  // Gives the memory of unused values up, but for so many, about; likewise.
+  void dropUnused(int most) {
+    Slot* slot = nullptr;
+    while (store_->ready.load(std::memory_order_relaxed) > most && store_->unused.pop(slot)) {
+      store_->ready.fetch_sub(1, std::memory_order_relaxed);
+      delete slot;
+    }
+  }
+
  private:
   static constexpr std::size_t most_unused = 1024;
   static constexpr std::size_t control_size = 128;  // of a shared pointer's count, [bytes]

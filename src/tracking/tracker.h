@@ -111,6 +111,7 @@ class Tracker {
 
   // Makes images ready for frames to come, in place of those that keyframes keep; for another thread.
   void prepareImages(int count) { preparation_.keepReady(count); }
+  void dropUnusedImages(int most) { preparation_.dropUnused(most); }
 
   // Of the last frame, tracked or not. Valid after the first.
   const std::shared_ptr<const FrameImages>& latestImages() const { return preparation_.latestImages(); }
