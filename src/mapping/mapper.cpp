@@ -12,6 +12,7 @@
 namespace edgeslam {
 namespace {
 
+constexpr const char* unit_is_loose = "inertia: the unit moves against the camera; is it loose?";
 constexpr const char* unit_is_turned_otherwise =
     "inertia: the unit seems to be turned otherwise than imu_T_camera says; calibrate it";
 constexpr std::int64_t little_offset_ns = 1'500'000;  // a change of the unit's clock that bends no map
@@ -166,6 +167,7 @@ bool Mapper::addKeyframe(const TrackedFrame& frame) {
   findCamera();
   findTimeOffset(frame);
   findUnitRotation();
+  checkUnit();
   alignToEarth();
   scaleByWheels();
   const std::vector<CulledKeyframe> culled = cullKeyframes(options_.culling, map_, candidates_);
@@ -218,6 +220,13 @@ void Mapper::findUnitRotation() {
   const bool bends_map = unit_rotation_finding_->bendsMap();
   time_offset_finding_->setRotation(map_.unit_rotation->imu_R_camera, bends_map);
   if (bends_map) alignAnew();
+}
+
+void Mapper::checkUnit() {
+  if (!loose_unit_check_ || map_.unit_is_left_out) return;
+  const std::vector<PosedCamera>& frames = time_offset_finding_->frames();
+  if (!loose_unit_check_->look(frames, time_offset_finding_->samples(), unitAsFound())) return;
+  leaveUnitOut(unit_is_loose, frames.back().time_ns - LooseUnitCheck::looked_back_ns);
 }
 
 // The camera goes on alone. What the unit said of scale and gravity before it was wrong stays.

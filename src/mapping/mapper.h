@@ -14,6 +14,7 @@
 #include "mapping/inertial_alignment_estimate.h"
 #include "mapping/initialisation.h"
 #include "mapping/local_adjustment.h"
+#include "mapping/loose_unit_check.h"
 #include "mapping/map_uncertainty.h"
 #include "mapping/new_points.h"
 #include "mapping/time_offset_finding.h"
@@ -65,6 +66,7 @@ class Mapper {
     if (!options.local_adjustment.inertia) return;
     time_offset_finding_.emplace(*options.local_adjustment.inertia);
     unit_rotation_finding_.emplace(*options.local_adjustment.inertia);
+    loose_unit_check_.emplace();
   }
 
   // Before the first frame: continues a map made earlier, of the same camera.
@@ -121,6 +123,10 @@ class Mapper {
   const std::optional<FoundUnitRotation>& foundUnitRotation() const { return map_.unit_rotation; }
   // By how much it seems to be turned otherwise than is given, where that is too far to be used [rad]; else 0.
   double unitRotationTooFar() const { return unit_rotation_finding_ ? unit_rotation_finding_->tooFar() : 0; }
+  // What was seen of a unit that is loose; null: nothing.
+  const LooseUnitCheck* looseUnit() const {
+    return loose_unit_check_ && loose_unit_check_->isLoose() ? &*loose_unit_check_ : nullptr;
+  }
   // Poses of the frames before their maps stood, with the worlds as they are now.
   std::vector<EarlyPose> earlyPoses() const;
 
@@ -144,6 +150,7 @@ class Mapper {
   void findTimeOffset(const TrackedFrame& keyframe);
   InertialUnit unitAsFound() const;
   void findUnitRotation();
+  void checkUnit();
   void leaveUnitOut(const char* why, std::int64_t wrong_since_ns);
   void alignAnew();
   void alignToEarth();
@@ -157,6 +164,7 @@ class Mapper {
   CameraFinding camera_finding_;
   std::optional<TimeOffsetFinding> time_offset_finding_;      // where there is an inertial unit
   std::optional<UnitRotationFinding> unit_rotation_finding_;  // likewise
+  std::optional<LooseUnitCheck> loose_unit_check_;            // likewise
   std::int64_t metric_since_ns_ = 0;                          // when it was last found how a world lies to the earth
   Map map_;
   Candidates candidates_;

@@ -161,6 +161,13 @@ void MappingWorker::tellOfUnitLeftOut() {
   if (!mapper_.map().unit_is_left_out || std::exchange(told_left_out_, true)) return;
   MappingReport& told = report(last_frame_);
   told.is_of_setup = true;
+  if (const LooseUnitCheck* loose = mapper_.looseUnit()) {
+    told.events.push_back(
+        formatted("the inertial unit moves against the camera in %.0f %% of the time, by up to %.1f degrees: is it "
+                  "loose? The camera goes on alone",
+                  100 * loose->share(), degrees(loose->largest())));
+    return;
+  }
   told.events.push_back(formatted(
       "the inertial unit seems to be turned by %.1f degrees against what imu_T_camera says: calibrate it; the "
       "camera goes on alone",

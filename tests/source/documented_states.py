@@ -30,7 +30,9 @@ SOURCES = {
         "imu_T_camera this is known from the start",
         "the inertial unit is turned by %.2f degrees +- %.2f against what imu_T_camera says: with quaternion: [%.6f, "
         "%.6f, %.6f, %.6f] there this is known from the start",
-        "the inertial unit seems to be turned by %.1f degrees against what imu_T_camera says: calibrate it; the camera goes on alone"],
+        "the inertial unit seems to be turned by %.1f degrees against what imu_T_camera says: calibrate it; the camera goes on alone",
+        "the inertial unit moves against the camera in %.0f %% of the time, by up to %.1f degrees: is it loose? The camera "
+        "goes on alone"],
     "src/mapping/initialisation.cpp": [" from frame ", " to frame ", ", "],  # what the start was
     "src/mapping/initialisation.h": [],
     "src/mapping/initial_judgement.cpp": ["quality ", " edge pieces, parallax ", " deg, ", " points"],  # likewise

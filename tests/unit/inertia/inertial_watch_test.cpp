@@ -70,5 +70,13 @@ TEST(InertialWatch, LateAndRareSamplesAreTold) {
   EXPECT_NE(problemWith({40, 3}).find("25 times a second"), std::string::npos);
 }
 
+TEST(InertialWatch, GapsAreTold) {
+  InertialWatch watch(0);
+  give({}, start, start + 2 * second, watch);
+  EXPECT_EQ(watch.problem(), "");
+  give({}, start + 2 * second + 400 * ms, start + 5 * second, watch);
+  EXPECT_NE(watch.problem().find("samples are missing: 1 gap in the last 10 s"), std::string::npos) << watch.problem();
+}
+
 }  // namespace
 }  // namespace edgeslam
