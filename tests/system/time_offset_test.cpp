@@ -14,20 +14,8 @@ class TimeOffset : public MeasuredBesideTest {
 
   // The sequence with another offset in its file than the right one, which is 0.
   std::string sequenceWith(double given_s) const {
-    const std::string name = "given" + std::to_string(std::lround(1e3 * given_s));
-    std::filesystem::create_directories(folder_.path(name));
-    for (const char* file : {"rgb", "rgb.txt", "camera.yaml", "groundtruth.txt", "imu.csv"}) {
-      std::filesystem::create_symlink(input_ + "/" + file, folder_.path(name + "/" + file));
-    }
-    folder_.write(name + "/imu.yaml",
-                  fileContent(input_ + "/imu.yaml") + "time_offset_s: " + std::to_string(given_s) + "\n");
-    return folder_.path(name);
-  }
-  ReplayedRun runOver(const std::string& sequence, const std::string& name,
-                      const std::vector<std::string>& more = {"--imu"}) const {
-    ReplayedRun run = replayed(sequence, folder_.path(name), more);
-    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.messages;
-    return run;
+    return sequenceWithUnit("given" + std::to_string(std::lround(1e3 * given_s)),
+                            fileContent(input_ + "/imu.yaml") + "time_offset_s: " + std::to_string(given_s) + "\n");
   }
 };
 
@@ -60,11 +48,7 @@ TEST_F(TimeOffset, IsFoundInTheSameBytesTwice) {
   const std::string sequence = sequenceWith(0.03);
   runOver(sequence, "once");
   runOver(sequence, "twice");
-  for (const char* name : {"/trajectory.txt", "/trajectory_live.txt", "/map.ply"}) {
-    EXPECT_TRUE(fileContent(folder_.path(std::string("once") + name)) ==
-                fileContent(folder_.path(std::string("twice") + name)))
-        << name;
-  }
+  expectSameBytes("once", "twice");
 }
 
 TEST_F(TimeOffset, IsFoundAgainWhereARecordingRepeatsALiveRun) {
@@ -73,11 +57,7 @@ TEST_F(TimeOffset, IsFoundAgainWhereARecordingRepeatsALiveRun) {
   ASSERT_TRUE(live.summary["imu_time_offset"].is_object()) << live.outcome.output;
   const ReplayedRun again = runOver(folder_.path("recording"), "again", {});
   EXPECT_EQ(live.summary["imu_time_offset"], again.summary["imu_time_offset"]);
-  for (const char* name : {"/trajectory.txt", "/trajectory_live.txt", "/map.ply"}) {
-    EXPECT_TRUE(fileContent(folder_.path(std::string("live") + name)) ==
-                fileContent(folder_.path(std::string("again") + name)))
-        << name;
-  }
+  expectSameBytes("live", "again");
 }
 
 }  // namespace

@@ -14,11 +14,6 @@ class UnitRotation : public MeasuredBesideTest {
 
   // The sequence with another rotation in its file than the right one, by a vector in the camera's frame [degrees].
   std::string sequenceTurnedBy(const Eigen::Vector3d& degrees_wrong) const {
-    const std::string name = "turned" + std::to_string(sequences_++);
-    std::filesystem::create_directories(folder_.path(name));
-    for (const char* file : {"rgb", "rgb.txt", "camera.yaml", "groundtruth.txt", "imu.csv"}) {
-      std::filesystem::create_symlink(input_ + "/" + file, folder_.path(name + "/" + file));
-    }
     const Eigen::Quaterniond q = unit_.imu_T_camera.rotation * rotationExp(radians(1) * degrees_wrong);
     std::ostringstream given;
     given.precision(9);
@@ -26,14 +21,7 @@ class UnitRotation : public MeasuredBesideTest {
     std::string unit = fileContent(input_ + "/imu.yaml");
     const std::size_t begin = unit.find("quaternion: ["), end = unit.find(']', begin);
     unit.replace(begin, end + 1 - begin, given.str());
-    folder_.write(name + "/imu.yaml", unit);
-    return folder_.path(name);
-  }
-  ReplayedRun runOver(const std::string& sequence, const std::string& name,
-                      const std::vector<std::string>& more = {"--imu"}) const {
-    ReplayedRun run = replayed(sequence, folder_.path(name), more);
-    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.messages;
-    return run;
+    return sequenceWithUnit("turned" + std::to_string(sequences_++), unit);
   }
 
   const InertialUnit unit_;
@@ -86,11 +74,7 @@ TEST_F(UnitRotation, IsFoundInTheSameBytesTwice) {
   const std::string sequence = sequenceTurnedBy({2, 0, 0});
   runOver(sequence, "once");
   runOver(sequence, "twice");
-  for (const char* name : {"/trajectory.txt", "/trajectory_live.txt", "/map.ply"}) {
-    EXPECT_TRUE(fileContent(folder_.path(std::string("once") + name)) ==
-                fileContent(folder_.path(std::string("twice") + name)))
-        << name;
-  }
+  expectSameBytes("once", "twice");
 }
 
 TEST_F(UnitRotation, IsFoundAgainWhereARecordingRepeatsALiveRun) {
@@ -99,11 +83,7 @@ TEST_F(UnitRotation, IsFoundAgainWhereARecordingRepeatsALiveRun) {
   ASSERT_TRUE(live.summary["imu_rotation"].is_object()) << live.outcome.output;
   const ReplayedRun again = runOver(folder_.path("recording"), "again", {});
   EXPECT_EQ(live.summary["imu_rotation"], again.summary["imu_rotation"]);
-  for (const char* name : {"/trajectory.txt", "/trajectory_live.txt", "/map.ply"}) {
-    EXPECT_TRUE(fileContent(folder_.path(std::string("live") + name)) ==
-                fileContent(folder_.path(std::string("again") + name)))
-        << name;
-  }
+  expectSameBytes("live", "again");
 }
 
 }  // namespace
