@@ -14,6 +14,7 @@ void Initialisation::start(InitialFrames frames) {
   inverse_depths_.assign(first.observations.size(), 1.0);
   depth_sigmas_.assign(first.observations.size(), flat_start_sigma);
   accepted_ = InitialStructure();
+  standing_camera_.forget();
   Pose first_T_camera;
   for (TrackedFrame& frame : frames_.since) {
     first_T_camera = locateAgainst(camera_, first, inverse_depths_, frame, first_T_camera).value_or(first_T_camera);
@@ -28,9 +29,13 @@ bool Initialisation::add(const TrackedFrame& frame) {
   addFrame(frames_, frame);
   if (!isDue()) return false;
 
-  // P13: the first frame and this one are apart.
+  // P13: the first frame and this one are apart, and not because of a thing that moves.
   if (displacementLessRotation(camera_, frames_) < options_.least_displacement_px) {
     waiting_for_ = "too little parallax: the points hardly moved, or by rotation only";
+    return false;
+  }
+  if (standing_camera_.stands(camera_, frames_)) {
+    waiting_for_ = standing_camera_.description();
     return false;
   }
 

@@ -16,6 +16,7 @@
 #include "mapping/initial_judgement.h"
 #include "mapping/initial_structure.h"
 #include "mapping/initialisation_options.h"
+#include "mapping/standing_camera.h"
 
 namespace edgeslam {
 
@@ -57,6 +58,7 @@ class Initialisation {
   Camera camera_;
   InitialisationOptions options_;
   InitialFrames frames_;
+  StandingCamera standing_camera_;
   std::vector<double> inverse_depths_, depth_sigmas_;  // provisional, of the first frame's points
   InitialStructure accepted_;
   std::string waiting_for_ = "no frame yet";

@@ -35,6 +35,7 @@ SOURCES = {
         "goes on alone"],
     "src/mapping/initialisation.cpp": [" from frame ", " to frame ", ", "],  # what the start was
     "src/mapping/initialisation.h": [],
+    "src/mapping/standing_camera.cpp": [" of "],
     "src/mapping/initial_judgement.cpp": ["quality ", " edge pieces, parallax ", " deg, ", " points"],  # likewise
     "src/mapping/mapper.cpp": ["a saved map", "recovery"],
     "src/mapping/track_loss_recovery.cpp": [],

@@ -101,6 +101,22 @@ TEST_F(StandingStill, ForTenMinutesNothingHappens) {
   EXPECT_EQ(result.run.count("tracking", length, sequence_.size() - 1), sequence_.size() - length);
 }
 
+// A camera that stands and has no map yet sees another room go by on a screen. It moves afterwards.
+TEST_P(BadScenes, WhatMovesBeforeAStandingCameraIsNoMap) {
+  constexpr int stands_until = 119;
+  const cv::Mat background = sequence_.original(stands_until);
+  const cv::Rect screen(70, 50, 180, 140);
+  const SpoiltSequence film(folderOf(GetParam() == "hall" ? "parlour" : "hall"), length);
+  sequence_.replace(0, stands_until, [&](int index) {
+    cv::Mat picture = background.clone();
+    film.original(index)(screen).copyTo(picture(screen));
+    return picture;
+  });
+  const Spoilt result = run();
+  EXPECT_EQ(result.run.count("tracking", 0, stands_until), 0);
+  EXPECT_GE(result.run.count("tracking", length - 30, length - 1), 25);
+}
+
 INSTANTIATE_TEST_SUITE_P(Places, BadScenes, ::testing::Values("hall", "parlour"),
                          [](const auto& place) { return place.param; });
 

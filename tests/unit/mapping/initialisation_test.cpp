@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
 
 #include "geometry/similarity.h"
 #include "tracking/pose_estimation.h"
@@ -188,6 +189,25 @@ TEST(Initialisation, NoiseIsNeverTakenForAMap) {
     EXPECT_EQ(start.accepted_at, -1) << "seed " << seed << ": " << start.initialisation.description();
     EXPECT_EQ(frames, 21);
     EXPECT_NE(start.initialisation.waitingFor(), "");
+  }
+}
+
+// The scene moves before a camera that stands, all but every fourth of its points, which are wherever they were.
+TEST(Initialisation, AThingThatMovesBeforeAStandingCameraIsNoMap) {
+  for (const std::uint64_t seed : {9, 10}) {
+    std::map<PointId, Eigen::Vector2d> at_first;
+    const auto background_stays = [&](int, std::vector<PointObservation>& observations, test::Random&) {
+      for (PointObservation& observation : observations) {
+        if (observation.point % 4 != 0) continue;
+        Eigen::Vector2d& pixel = observation.measurement.pixel;
+        pixel = at_first.try_emplace(observation.point, pixel).first->second;
+        observation.bearing = bearing(test::distorted_camera, pixel);
+      }
+    };
+    const Start start = run(test::framesOnAWall(31), sideways, 60, seed, background_stays);
+    EXPECT_EQ(start.accepted_at, -1) << start.initialisation.description();
+    EXPECT_NE(start.initialisation.waitingFor().find("the camera seems to stand"), std::string::npos)
+        << start.initialisation.waitingFor();
   }
 }
 
