@@ -15,7 +15,7 @@ constexpr double still_px = 0.7, moved_px = 1.5;
 // height that nine in ten of these reach over. Where things moved before a standing camera 20 to 40 % of the points
 // were still; of a robot that begins to drive slowly, in coarse JPEG, 11 %.
 constexpr double still_share = 0.15, reach_share = 0.4;
-// Of these, what is enough for a camera that stood when last looked at.
+// Of these, what is enough for a camera that stood and was not seen to move since.
 constexpr double share_again = 0.5;
 // Where fewer of the still points are left, they do not say whether the camera set off.
 constexpr int fewest_left = 10;
@@ -45,7 +45,7 @@ bool StandingCamera::stands(const Camera& camera, const InitialFrames& frames) {
     forget();
     stood_ = false;
   }
-  const double enough = std::exchange(stood_, false) ? share_again : 1;
+  const double enough = stood_ ? share_again : 1;
 
   std::vector<PointId> still;
   std::vector<double> columns, rows;
@@ -57,7 +57,10 @@ bool StandingCamera::stands(const Camera& camera, const InitialFrames& frames) {
     columns.push_back(before.measurement.pixel.x());
     rows.push_back(before.measurement.pixel.y());
   });
-  if (static_cast<double>(still.size()) < enough * still_share * static_cast<double>(followed)) return false;
+  if (static_cast<double>(still.size()) < enough * still_share * static_cast<double>(followed)) {
+    stood_ = false;
+    return false;
+  }
   if (reachOf(std::move(columns)) < enough * reach_share * camera.width) return false;
   if (reachOf(std::move(rows)) < enough * reach_share * camera.height) return false;
   description_ = "the camera seems to stand: " + std::to_string(still.size()) + " of " + std::to_string(followed) +

@@ -27,7 +27,7 @@ class StandingCamera {
   bool hasSetOff(const InitialFrames& frames) const;
 
   std::vector<PointId> still_;  // when it was first seen to stand, ascending; empty: it was not
-  bool stood_ = false;          // when last looked at
+  bool stood_ = false;          // and was not seen to move since
   std::string description_;
 };
 
