@@ -77,6 +77,12 @@ SharedPoints pointsSharedWith(const Camera& camera, const MapUncertaintyOptions&
   return shared;
 }
 
+// How much farther a way leads astray where the view is narrow. A turn and a motion to the side differ in how the
+// image's middle moves against its sides, which grows with the square of the half view's tangent.
+double narrowness(const Camera& camera, double narrow_view) {
+  return std::max(1.0, squared(narrow_view / (0.5 * camera.width / camera.fx)));
+}
+
 // What the points that both see leave open of `keyframe` relative to `other`, and how far the way between them leads
 // astray.
 std::optional<Matrix7d> seenUncertainty(const Camera& camera, const MapUncertaintyOptions& options, const Map& map,
@@ -100,8 +106,9 @@ std::optional<Matrix7d> seenUncertainty(const Camera& camera, const MapUncertain
   Matrix7d link = Matrix7d::Zero();
   link.topLeftCorner<6, 6>() = squared(options.pose_factor) * factor.solve(Matrix6d::Identity()).eval();
   link(6, 6) = squared(options.scale_factor) / more.scale_information;
-  link.diagonal().head<3>().array() += squared(options.position_walk * depth) * way;
-  link.diagonal().segment<3>(3).array() += squared(options.rotation_walk) * way;
+  const double astray = narrowness(camera, options.narrow_view);
+  link.diagonal().head<3>().array() += squared(astray * options.position_walk * depth) * way;
+  link.diagonal().segment<3>(3).array() += squared(astray * options.rotation_walk) * way;
   link(6, 6) += squared(options.scale_walk) * way;
   return link;
 }

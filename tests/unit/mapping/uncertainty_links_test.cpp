@@ -138,6 +138,27 @@ TEST(UncertaintyLinks, GrowWithTheDoubtOfDepthsAndOfMeasurements) {
   }
 }
 
+// What counts as narrow is twice as wide as the camera's view: the way leads four times as far astray.
+TEST(UncertaintyLinks, TheWayLeadsFartherAstrayWhereTheViewIsNarrow) {
+  Map map = walkedMap(2);
+  const Camera camera = test::Walk::camera();
+  MapUncertaintyOptions still, wide, narrow;
+  still.position_walk = still.rotation_walk = still.scale_walk = 0;
+  wide.narrow_view = 0.5 * camera.width / camera.fx;
+  narrow.narrow_view = 2 * wide.narrow_view;
+  std::vector<Matrix7d> uncertainties;
+  for (const MapUncertaintyOptions& options : {still, wide, narrow}) {
+    renew(map, options);
+    uncertainties.push_back(map.keyframes[1].uncertainty);
+  }
+  const Matrix7d added = uncertainties[1] - uncertainties[0], added_by_narrow = uncertainties[2] - uncertainties[0];
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(added_by_narrow(i, i), 16 * added(i, i), 1e-6 * added(i, i)) << i;
+  EXPECT_NEAR(added_by_narrow(6, 6), added(6, 6), 1e-9 * added(6, 6));
+  wide.narrow_view = 0.1;
+  renew(map, wide);
+  EXPECT_EQ(map.keyframes[1].uncertainty, uncertainties[1]) << "a wide view is no better than a usual one";
+}
+
 // Over the way alone: the variance grows in proportion to its length.
 TEST(UncertaintyLinks, TheWayLeadsAstrayAsFarAsTheOptionsSay) {
   Map map = walkedMap(2);
