@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/angles.h"
 #include "geometry/median.h"
 #include "geometry/relative_rotation.h"
 #include "mapping/points_seen_by_both.h"
@@ -28,6 +29,14 @@ double displacementLessRotation(const Camera& camera, const InitialFrames& frame
   const CommonBearings bearings = commonBearings(frames.first, frames.current());
   if (bearings.in_first.size() < fewest_common) return 0;
   return relativeRotation(bearings.in_first, bearings.in_other).median_error * meanFocalLength(camera);
+}
+
+double leastDisplacement(const Camera& camera, const InitialFrames& frames, const InitialisationOptions& options) {
+  const std::vector<PointObservation>& seen = frames.current().observations;
+  const auto corners = std::count_if(seen.begin(), seen.end(), [](const PointObservation& o) { return o.corner; });
+  const bool is_first_map = frames.first.keyframe == 0;
+  if (!is_first_map || corners < options.five_point_corners) return options.least_displacement_px;
+  return std::min(options.least_displacement_px, radians(options.least_displacement_deg) * meanFocalLength(camera));
 }
 
 InitialEvidence judgeInitialStructure(const InitialFrames& frames, const InitialStructure& structure,

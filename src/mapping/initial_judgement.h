@@ -13,6 +13,10 @@ namespace edgeslam {
 // where too few are in both.
 double displacementLessRotation(const Camera& camera, const InitialFrames& frames);
 
+// What it must be to begin with [px]. Small images that show many corners begin a run's first map with less: in pixels
+// their points move less. A map beside others has time, as these are looked for meanwhile.
+double leastDisplacement(const Camera& camera, const InitialFrames& frames, const InitialisationOptions& options);
+
 // What speaks for a structure, over the first frame's points that the current frame sees.
 struct InitialEvidence {
   int frames = 0;           // since the first

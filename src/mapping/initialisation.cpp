@@ -30,7 +30,7 @@ bool Initialisation::add(const TrackedFrame& frame) {
   if (!isDue()) return false;
 
   // P13: the first frame and this one are apart, and not because of a thing that moves.
-  if (displacementLessRotation(camera_, frames_) < options_.least_displacement_px) {
+  if (displacementLessRotation(camera_, frames_) < leastDisplacement(camera_, frames_, options_)) {
     waiting_for_ = "too little parallax: the points hardly moved, or by rotation only";
     return false;
   }

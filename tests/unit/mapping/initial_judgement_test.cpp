@@ -31,6 +31,23 @@ TEST(InitialJudgement, ARotationAloneMovesNothing) {
   EXPECT_EQ(displacementLessRotation(test::distorted_camera, nothing_seen), 0);
 }
 
+TEST(InitialJudgement, OnlyTheFirstMapOfASmallImageWithCornersBeginsWithLess) {
+  const InitialisationOptions options;
+  InitialFrames frames = test::initialFrames(test::distorted_camera, judged_wall, {Pose(), test::at(0.3)});
+  frames.first.keyframe = 0;
+  Camera small = test::distorted_camera;
+  small.fx = small.fy = 200;
+  EXPECT_NEAR(leastDisplacement(small, frames, options), 200 * 0.00716, 0.01);
+  Camera large = small;
+  large.fx = large.fy = 500;
+  EXPECT_EQ(leastDisplacement(large, frames, options), options.least_displacement_px);
+  InitialFrames beside_another = frames;
+  beside_another.first.keyframe = 7;
+  EXPECT_EQ(leastDisplacement(small, beside_another, options), options.least_displacement_px);
+  for (PointObservation& observation : frames.since.back().observations) observation.corner = false;
+  EXPECT_EQ(leastDisplacement(small, frames, options), options.least_displacement_px);
+}
+
 TEST(InitialJudgement, TheTruthHasItsParallaxAndItsQuality) {
   const Pose pose = test::at(0.3);
   const InitialFrames frames = test::initialFrames(test::distorted_camera, judged_wall, {Pose(), pose});
