@@ -1,5 +1,6 @@
 #include "mapping/initial_frames.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -37,6 +38,11 @@ std::vector<std::size_t> spreadFrames(const InitialFrames& frames, int count) {
     if (end >= 1 && (spread.empty() || spread.back() != end - 1)) spread.push_back(end - 1);
   }
   return spread;
+}
+
+int cornersSeen(const InitialFrames& frames) {
+  const std::vector<PointObservation>& seen = frames.current().observations;
+  return static_cast<int>(std::count_if(seen.begin(), seen.end(), [](const PointObservation& o) { return o.corner; }));
 }
 
 CommonBearings commonBearings(const TrackedFrame& first, const TrackedFrame& other) {

@@ -22,6 +22,9 @@ void addFrame(InitialFrames& frames, const TrackedFrame& frame);
 // Indices into `since` of up to `count` frames, spread evenly; the last one is the current frame.
 std::vector<std::size_t> spreadFrames(const InitialFrames& frames, int count);
 
+// How many of the first frame's points the current one sees as corner-like.
+int cornersSeen(const InitialFrames& frames);
+
 // Unit bearings of the points that both frames see, each in its frame's camera.
 struct CommonBearings {
   std::vector<Eigen::Vector3d> in_first, in_other;

@@ -32,10 +32,8 @@ double displacementLessRotation(const Camera& camera, const InitialFrames& frame
 }
 
 double leastDisplacement(const Camera& camera, const InitialFrames& frames, const InitialisationOptions& options) {
-  const std::vector<PointObservation>& seen = frames.current().observations;
-  const auto corners = std::count_if(seen.begin(), seen.end(), [](const PointObservation& o) { return o.corner; });
   const bool is_first_map = frames.first.keyframe == 0;
-  if (!is_first_map || corners < options.five_point_corners) return options.least_displacement_px;
+  if (!is_first_map || cornersSeen(frames) < options.five_point_corners) return options.least_displacement_px;
   return std::min(options.least_displacement_px, radians(options.least_displacement_deg) * meanFocalLength(camera));
 }
 

@@ -97,9 +97,7 @@ InitialStart followedStart(const InitialFrames& frames, const std::vector<double
 std::optional<InitialStart> fivePointStart(const Camera& camera, const InitialFrames& frames,
                                            const InitialisationOptions& options) {
   const TrackedFrame &first = frames.first, &current = frames.current();
-  const std::vector<PointObservation>& seen = current.observations;
-  const auto corners = std::count_if(seen.begin(), seen.end(), [](const PointObservation& o) { return o.corner; });
-  if (corners < options.five_point_corners) return std::nullopt;
+  if (cornersSeen(frames) < options.five_point_corners) return std::nullopt;
   const RelativePose relative = relativePoseOfCorners(camera, first, current);
   if (!relative.found) return std::nullopt;
 

@@ -80,7 +80,8 @@ SharedPoints pointsSharedWith(const Camera& camera, const MapUncertaintyOptions&
 // How much farther a way leads astray where the view is narrow. A turn and a motion to the side differ in how the
 // image's middle moves against its sides, which grows with the square of the half view's tangent.
 double narrowness(const Camera& camera, double narrow_view) {
-  return std::max(1.0, squared(narrow_view / (0.5 * camera.width / camera.fx)));
+  const double half_view = 0.5 * std::max(camera.width / camera.fx, camera.height / camera.fy);
+  return std::max(1.0, squared(narrow_view / half_view));
 }
 
 // What the points that both see leave open of `keyframe` relative to `other`, and how far the way between them leads

@@ -27,7 +27,8 @@ struct MapUncertaintyOptions {
   double position_walk = 0.004;   // share of the scene's depth
   double rotation_walk = 0.0075;  // [rad]
   double scale_walk = 0.015;
-  // A view is narrow below this tangent of half its width's angle: a turn then looks like a motion to the side.
+  // A view is narrow below this tangent of half its angle, along the image's longer side: a turn then looks like a
+  // motion to the side.
   double narrow_view = 0.61;
   std::optional<WheelOptions> wheels;  // beneath the camera; none: the camera alone
 };
