@@ -3,16 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
-#include <new>
-
-namespace cv {
-class MatAllocator;
-}
 
 namespace edgeslam {
 
-// At most one at a time. For what takes memory by `new` or for a cv::Mat, in any thread.
+// At most one at a time. For all that takes its memory from malloc or one of its kin, in any thread: `new`, images,
+// matrices, libraries. A program that has one brings its own malloc, which asks the C library's.
 class MemoryReserve {
  public:
   // Enough to write a map of some hundred keyframes.
@@ -28,11 +23,6 @@ class MemoryReserve {
 
   // Memory ran out, and there is no more after this: end.
   bool isUsed() const;
-
- private:
-  std::unique_ptr<cv::MatAllocator> images_;
-  cv::MatAllocator* images_before_;
-  std::new_handler handler_before_;
 };
 
 }  // namespace edgeslam

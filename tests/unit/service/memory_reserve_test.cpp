@@ -4,9 +4,15 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <Eigen/Core>
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace edgeslam {
@@ -66,6 +72,71 @@ TEST_F(MemoryReserveDeathTest, ImagesLikewise) {
                 images.emplace_back(20, static_cast<int>(mebibyte), CV_8U);
               }),
               testing::ExitedWithCode(0), "");
+}
+
+TEST_F(MemoryReserveDeathTest, MatricesLikewise) {
+  EXPECT_EXIT(takeAll([matrices = std::vector<Eigen::MatrixXd>()]() mutable {
+                matrices.emplace_back(Eigen::MatrixXd::Zero(20, static_cast<int>(mebibyte / sizeof(double))));
+              }),
+              testing::ExitedWithCode(0), "");
+}
+
+// A library in C has each of these; what it is refused it tells by null.
+template <typename Allocate>
+void takenInC(Allocate allocate) {
+  EXPECT_EXIT(takeAll([allocate] {
+                if (allocate(20 * mebibyte) == nullptr) throw std::bad_alloc();
+              }),
+              testing::ExitedWithCode(0), "");
+}
+
+TEST_F(MemoryReserveDeathTest, WhatIsWrittenInCLikewise) {
+  takenInC([](std::size_t bytes) { return std::malloc(bytes); });
+  takenInC([](std::size_t bytes) { return std::calloc(bytes, 1); });
+  takenInC([](std::size_t bytes) { return std::realloc(std::malloc(1), bytes); });
+  takenInC([](std::size_t bytes) { return std::aligned_alloc(64, bytes); });
+  takenInC([](std::size_t bytes) {
+    void* memory = nullptr;
+    return posix_memalign(&memory, 64, bytes) == 0 ? memory : nullptr;
+  });
+}
+
+// Threads that are refused while the reserve is being given get of it as well. None of these blocks fits into what the
+// C library has set aside for a thread.
+TEST_F(MemoryReserveDeathTest, IsThereForEveryThreadThatIsRefusedAtOnce) {
+  const auto all_take = [] {
+    constexpr int count = 8;
+    const MemoryReserve reserve((count + 2) * 100 * mebibyte);
+    std::atomic<int> ready{0}, served{0};
+    std::vector<std::thread> threads;
+    threads.reserve(count);
+    for (int i = 0; i < count; ++i) {
+      threads.emplace_back([&] {
+        void* volatile first = std::malloc(1);  // by which the thread gets what is set aside
+        for (++ready; ready <= count;) std::this_thread::yield();
+        std::free(first);
+        void* volatile block = std::malloc(100 * mebibyte);
+        if (block != nullptr) ++served;
+      });
+    }
+    while (ready < count) std::this_thread::yield();
+    limitMemory(0);
+    ++ready;
+    for (std::thread& thread : threads) thread.join();
+    expect(reserve.isUsed(), 2);
+    expect(served == count, 3);
+    ::_exit(0);
+  };
+  for (int i = 0; i < 10; ++i) EXPECT_EXIT(all_take(), testing::ExitedWithCode(0), "");
+}
+
+TEST(MemoryReserve, AlignmentsThatAreNoneAreRefusedAsEver) {
+  void* memory = nullptr;
+  EXPECT_EQ(posix_memalign(&memory, 24, 100), EINVAL);
+  EXPECT_EQ(posix_memalign(&memory, 4, 100), EINVAL);
+  ASSERT_EQ(posix_memalign(&memory, 4096, 100), 0);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % 4096, 0U);
+  std::free(memory);
 }
 
 TEST(MemoryReserve, IsGoneWithItsEnd) {
