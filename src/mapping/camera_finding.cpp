@@ -35,7 +35,9 @@ void CameraFinding::lookAtLens(const LookedAt& at, int keyframes, FoundCamera& f
   // Beside a focal length that is far off the trials tell little of the axis.
   const LensParts looked_for{true, true, !is_presumed || any(lens_.found)};
   const LensParts parts = toldOfLens(*equations, known, looked_for, lens_.found);
-  const LensParts told = toldByLooks(parts, estimateLens(*equations, known, parts).evidence, lens_);
+  LensParts told = toldByLooks(parts, estimateLens(*equations, known, parts).evidence, lens_);
+  // Of a lens that is presumed neither is likely to be right, and the one would take the blame for the other.
+  if (is_presumed && any(told)) told.focal_length = told.distortion = true;
   const LensEstimate estimate = estimateLens(*equations, known, any(told) ? told : looked_for);
   if (!is_presumed && estimate.gain > at.cost) return;  // it is no parabola
   if (!isToChange(estimate, told, at.cost, keyframes, options_.most_keyframes, lens_)) return;
@@ -81,15 +83,16 @@ bool CameraFinding::look(const Camera& calibrated, const GlobalAdjustmentOptions
     const std::optional<LookedAt> at = lookAt(camera, global, local, latest, map);
     if (at) lookAtReadout(*at, longestReadout(map, latest), keyframes, found);
   }
-  if (is_lens_due && !isUnderWay(readout_)) {
+  const bool waits = isUnderWay(readout_) && lens_waited_ < options_.longest_wait;
+  lens_waited_ = is_lens_due && waits ? lens_waited_ + 1 : 0;
+  if (is_lens_due && !waits) {
     const int keyframes = std::exchange(since_lens_, 0);
     const std::vector<KeyframeId> looked_at = any(lens_.found) ? latestOf(all, options_.most_keyframes_found) : latest;
     const std::optional<LookedAt> at = lookAt(camera, global, local, looked_at, seenBy(looked_at, map));
     if (at) lookAtLens(*at, keyframes, found);
   }
-  if (++looks_ >= options_.most_looks) {
-    readout_.is_settled = lens_.is_settled = true;
-  }
+  if (is_readout_due || (is_lens_due && !waits)) ++looks_;
+  if (looks_ >= options_.most_looks) readout_.is_settled = lens_.is_settled = true;
   if (found == map.found) return false;
   map.found = found;
   std::vector<KeyframeId> of_map;

@@ -23,6 +23,7 @@ struct CameraFindingOptions {
   int interval = 2;               // keyframes from one look to the next, until something is found ...
   int interval_found = 4;         // ... and then ...
   int interval_resting = 12;      // ... and after so many looks that found nothing that it may be known
+  int longest_wait = 12;          // of the lens for a readout that is being found: with a wrong lens none comes to stay
   int most_keyframes = 24;        // the latest so many are looked at ...
   int most_keyframes_found = 48;  // ... and once another lens was found: one motion tells of it what another does not
   int most_looks = 50;
@@ -54,6 +55,7 @@ class CameraFinding {
   ReadoutLooks readout_;
   LensLooks lens_;
   int since_readout_ = 0, since_lens_ = 0;  // was looked at [keyframes]
+  int lens_waited_ = 0;                     // for the readout, in a row [keyframes]
   int looks_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "mapping/camera_trial.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -32,7 +33,10 @@ std::optional<LookedAt> lookAt(const Camera& camera, const GlobalAdjustmentOptio
   at.adjustment.bundle = global.bundle;
   // All take part in each trial: what fits badly with one camera may fit with another.
   at.adjustment.outlier = std::numeric_limits<double>::infinity();
-  if (!adjustKeyframes(camera, at.adjustment, keyframes, {}, at.map, nullptr, &at.cost)) return std::nullopt;
+  if (!adjustKeyframes(camera, at.adjustment, keyframes, {}, at.map)) return std::nullopt;
+  // By that, lines may have been dissolved or come to stand: what is to be held against trials begins where they do.
+  at.cost = costWith(at, camera);
+  if (!std::isfinite(at.cost)) return std::nullopt;
   return at;
 }
 

@@ -113,6 +113,20 @@ TEST(CameraFinding, WhatOneMotionDoesNotTellIsFoundOnceAnotherTellsIt) {
   EXPECT_NEAR(*telling.map.found.readout_s, 0.02, 0.0015);
 }
 
+// A readout that is found to be another one at every look, as with a wrong lens, does not hold the lens up for ever.
+TEST(CameraFinding, AFocalLengthIsFoundThoughTheReadoutDoesNotComeToStay) {
+  const Camera wrong = test::withFocalLengths(test::Walk::camera(), 1.09);
+  test::Walk walk = test::rollingWalk(4, 20, 0.02, largest_motion, noise_px);
+  takeRaysAnew(wrong, test::allKeyframes(walk.map), walk.map);
+  CameraFinding finding({});
+  for (int keyframe = 0; keyframe < 200; ++keyframe) {
+    if (!finding.look(wrong, {}, {}, walk.map) || !walk.map.found.readout_s) continue;
+    walk.map.found.readout_s = *walk.map.found.readout_s + (keyframe % 2 == 0 ? 0.004 : -0.004);
+    takeRaysAnew(withFound(wrong, walk.map.found), test::allKeyframes(walk.map), walk.map);
+  }
+  EXPECT_NEAR(walk.map.found.focal_scale, 1 / 1.09, 0.02);
+}
+
 // It sees the same whatever the readout.
 TEST(CameraFinding, ACameraThatStandsWhileItReadsTellsNothing) {
   test::Walk walk = test::rollingWalk(8, 20, 0.02, 0, noise_px);

@@ -12,55 +12,6 @@
 namespace edgeslam::test {
 namespace {
 
-// Borders of panels that stand zig-zag, with a floor and a ceiling.
-std::vector<SpaceEdge> zigzag() {
-  std::vector<SpaceEdge> edges;
-  for (int i = 0; i < 5; ++i) {
-    const double x = -1.2 + 0.6 * i, depth = 3 + 0.5 * (i % 2), next_depth = 3.5 - 0.5 * (i % 2);
-    edges.push_back({{x, -0.7, depth}, {x, 0.7, depth}});
-    if (i == 4) break;
-    edges.push_back({{x + 0.1, 0.8, depth}, {x + 0.5, 0.8, next_depth}});
-    edges.push_back({{x + 0.5, -0.8, next_depth}, {x + 0.1, -0.8, depth}});
-  }
-  return edges;
-}
-
-const std::vector<SpaceEdge> zigzag_edges = zigzag();
-
-// Of keyframes that go sideways along the panels, with their lines placed, and every track a point on its line.
-Map mapOfPanels(const EdgeSight& sight, Random& random, int keyframes = 5) {
-  Map map;
-  for (KeyframeId id = 0; id < keyframes; ++id) {
-    const Pose pose = poseAt(0.08 * id, 0.02 * (id % 3), 0.03 * (id % 2), {0.01 * id, -0.02 * id, 0});
-    map.keyframes.push_back(keyframeThatSees(distorted_camera, zigzag_edges, id, pose, sight, random));
-  }
-  addPlacedLines(zigzag_edges, map);
-  for (std::size_t i = 0; i < zigzag_edges.size(); ++i) {
-    for (int k = 0; k < tracks_on_edge; ++k) {
-      MapPoint point;
-      point.id = trackOf(i, k);
-      bool hosted = false;
-      for (const Keyframe& keyframe : map.keyframes) {
-        const PointObservation* seen = findObservation(keyframe, point.id);
-        if (!seen) continue;
-        if (hosted) {
-          point.seen_in.push_back(keyframe.id);
-          continue;
-        }
-        hosted = true;
-        const double share = (k + 1.0) / (tracks_on_edge + 1);
-        const Eigen::Vector3d position = zigzag_edges[i].from + share * (zigzag_edges[i].to - zigzag_edges[i].from);
-        point.host = keyframe.id;
-        point.host_bearing = seen->bearing;
-        point.inverse_depth = 1 / (keyframe.world_T_camera.inverse() * position).norm();
-        point.inverse_depth_sigma = 0.1 * point.inverse_depth;
-      }
-      if (!point.seen_in.empty()) map.points.emplace(point.id, point);
-    }
-  }
-  return map;
-}
-
 double offItsLine(const Map& map, PointId id) {
   const SpaceLine line = lineThrough(zigzag_edges[static_cast<std::size_t>(id / 100)]);
   const Eigen::Vector3d position = worldPosition(map, map.points.at(id));
@@ -153,14 +104,7 @@ TEST(LineBundle, DissolvesALineThatItsViewsContradict) {
   Random random(4);
   Map map = mapOfPanels({}, random);
   const std::size_t points = map.points.size();
-  for (Keyframe& keyframe : map.keyframes) {
-    for (SeenEdge& edge : keyframe.straight_edges) {
-      if (edge.line != 6) continue;
-      const double off = keyframe.id % 2 == 0 ? 3 : -3;
-      edge.from = endAt(distorted_camera, edge.from.pixel + Eigen::Vector2d(off, off));
-      edge.to = endAt(distorted_camera, edge.to.pixel + Eigen::Vector2d(off, off));
-    }
-  }
+  contradictViewsOf(6, map);
   ASSERT_TRUE(adjustKeyframes(distorted_camera, {}, {2, 3, 4}, {0, 1}, map));
   EXPECT_EQ(map.lines.count(6), 0U);
   EXPECT_EQ(map.lines.size(), zigzag_edges.size() - 1);
