@@ -139,9 +139,10 @@ void Tracker::followBlurred(Work& work) {
 
 // What neither blur nor a jerk takes from the images is on the coarser levels of their pyramids. What is found there is
 // a pose, and how the camera moves; the next frame is followed from the last one that showed more. `lost_reason_` says
-// why that one is not this.
+// why that one is not this. A place that was found again may be another that looks alike: what confirms it is fine.
 bool Tracker::followCoarsely(Work& work) {
   if (!mapStands() || options_.map_is_frozen || !last_.isThere() || figures_.is_leap) return false;
+  if (last_was_found_again_) return false;
   if (lost_since_ns_ >= 0 && secondsSince(lost_since_ns_, work.time_ns) > options_.regain_seconds) return false;
   if (!hasEdges(frame_, last_, options_.coarse_fewest_edges)) return false;
   scratch_.release();

@@ -463,6 +463,27 @@ TEST(Tracker, ResumedItBelievesNoPoseThatFewOfThePointsFoundAgreeWith) {
   EXPECT_TRUE(few.state == TrackingState::lost || few.position_is_held) << few.reason;
 }
 
+// On coarse levels a place that looks alike agrees as well.
+TEST(Tracker, ResumedItIsFollowedCoarselyOnceAFineFrameConfirmsIt) {
+  Tracked run(2, patient());
+  ASSERT_EQ(track(run.tracker, 3, 3 * walking_interval_ns, elsewhere()).state, TrackingState::lost);
+  const std::int64_t later_ns = 900'000'000;
+  ASSERT_EQ(track(run.tracker, 90, later_ns, imageAt(8)).state, TrackingState::lost);
+  keepLostFrame(run.tracker);
+  MapView view = moved(run.view, Pose());
+  run.tracker.resume(view, path(8), 1e-6 * Matrix6d::Identity(), foundIn(view, path(8), Pose()));
+  const auto trackLater = [&](int i, const cv::Mat& image) {
+    return track(run.tracker, 83 + i, later_ns + (i - 8) * walking_interval_ns, image);
+  };
+  const Outcome unconfirmed = trackLater(9, outOfFocus(imageAt(9), 5));
+  EXPECT_FALSE(isGoodPose(unconfirmed.state)) << unconfirmed.reason;
+  const Outcome fine = trackLater(10, imageAt(10));
+  ASSERT_EQ(fine.state, TrackingState::tracking) << fine.reason;
+  const Outcome confirmed = trackLater(11, outOfFocus(imageAt(11), 5));
+  EXPECT_EQ(confirmed.state, TrackingState::tracking) << confirmed.reason;
+  EXPECT_EQ(confirmed.reason.find("followed coarsely: "), 0U) << confirmed.reason;
+}
+
 // The same place as another world, whose keyframes have numbers from 60 on.
 MapView ofAnotherWorld(MapView view, int world) {
   view.world = world;
